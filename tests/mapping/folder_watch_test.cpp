@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <iomanip>
+#include <sstream>
 #include <thread>
 
 #include "base/file_bytes.hpp"
@@ -107,6 +109,45 @@ TEST_F(FolderWatch, GoesOnWithAFirstBuildThatWasInterrupted) {
   EXPECT_THAT(notes.all, ::testing::Contains(::testing::HasSubstr("broken.pcd")));
   EXPECT_THAT(totals, ::testing::ElementsAre(2, 3));
   EXPECT_TRUE(canonicalText(map()) == builtText(campus->files(), *inputs));
+}
+
+/// Writes poses of the first scans, the x of the first one shifted.
+void writePoses(const fs::path& file, const std::vector<fs::path>& scans, std::size_t count, double shift_m) {
+  std::ostringstream text;
+  text << std::setprecision(17);
+  for (std::size_t i = 0; i < count; ++i) {
+    Eigen::Matrix4d pose = scansOf({scans[i]}).file(0).T_map_sensor.matrix();
+    if (i == 0) pose(0, 3) += shift_m;
+    for (int row = 0; row < 4; ++row)
+      for (int column = 0; column < 4; ++column) text << pose(row, column) << ' ';
+    text << '\n';
+  }
+  writeFile(file, text.str());
+}
+
+TEST_F(FolderWatch, MovesScansWhosePosesAreCorrected) {
+  const fs::path poses = scans() / "poses.txt";
+  writePoses(poses, campus->files(), 2, 0);
+  arrive(0);
+  arrive(1);
+  std::vector<std::size_t> totals;
+  watch(3, [&](std::size_t total) {
+    totals.push_back(total);
+    if (totals.size() == 1) writePoses(poses, campus->files(), 2, 0.5);
+    if (totals.size() == 2) {
+      writePoses(poses, campus->files(), 3, 0.5);
+      arrive(2);
+    }
+  });
+  EXPECT_THAT(totals, ::testing::ElementsAre(2, 2, 3));
+  EXPECT_THAT(notes.all, ::testing::Contains(::testing::HasSubstr("1 scans have other poses now")));
+  EXPECT_TRUE(canonicalText(map()) == builtText({scans()}, *inputs));
+  // Corrected while nobody watched.
+  writePoses(poses, campus->files(), 3, 0);
+  WatchCallbacks callbacks;
+  callbacks.inputs = [] { return *inputs; };
+  watchFolder(scans(), map(), {.threads = 1, .interval_s = 0.05, .idle_s = 0.3}, callbacks, notes);
+  EXPECT_TRUE(canonicalText(map()) == builtText({scans()}, *inputs));
 }
 
 TEST_F(FolderWatch, BeginsInAnEmptyFile) {

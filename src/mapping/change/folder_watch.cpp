@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <map>
+#include <set>
 #include <thread>
 
 #include "cluxel/error.hpp"
@@ -76,15 +77,70 @@ class Watch {
       if (before == now && last_fault_ != fault.what()) sink_.note(last_fault_ = fault.what());
       return false;
     }
-    std::vector<std::size_t> fresh;
+    std::vector<std::size_t> fresh, reposed;
     for (std::size_t i = 0; i < scans->size(); ++i) {
       const auto file = now.find(scans->file(i).path), earlier = before.find(scans->file(i).path);
       const bool is_still = file != now.end() && earlier != before.end() && earlier->second == file->second;
       if (is_still && !isDone(*file)) fresh.push_back(i);
+      if (is_still && isDone(*file) && hasOtherPose(scans->file(i))) reposed.push_back(i);
     }
+    // While the poses are being written, they may be those of other scans.
+    const bool moved =
+        !reposed.empty() && poseFilesOf(*scans, before) == poseFilesOf(*scans, now) && move(*scans, reposed);
     const bool added = !fresh.empty() && add(*scans, fresh);
     for (const std::size_t i : fresh) done_[scans->file(i).path] = now.at(scans->file(i).path);
-    return added;
+    return added || moved;
+  }
+
+  /// Whether the scan has another pose than the one with which it was added or moved last.
+  bool hasOtherPose(const scan::ScanFile& file) const {
+    const auto placed = placed_.find(file.path);
+    return file.has_pose && placed != placed_.end() && placed->second.matrix() != file.T_map_sensor.matrix();
+  }
+  void notePlaces(const scan::ScanSet& scans) {
+    for (std::size_t i = 0; i < scans.size(); ++i) placed_[scans.file(i).path] = scans.file(i).T_map_sensor;
+  }
+
+  /// The files that are no scans.
+  static FolderState poseFilesOf(const scan::ScanSet& scans, FolderState state) {
+    for (std::size_t i = 0; i < scans.size(); ++i) state.erase(scans.file(i).path);
+    return state;
+  }
+
+  /// Moves those scans that the map has with other poses, as after a loop closure. False when there are none.
+  bool move(const scan::ScanSet& scans, const std::vector<std::size_t>& candidates) {
+    extension_.close();
+    std::map<scan::ScanId, ScanPose> poses;
+    std::set<scan::ScanId> ambiguous;
+    {
+      const auto environment = rdf::Environment::open(map_, rdf::OpenMode::ReadOnly);
+      const rdf::ReadTransaction transaction = environment->read();
+      for (const std::size_t i : candidates) {
+        const scan::ScanFile& file = scans.file(i);
+        const std::optional<scan::ScanId> id = file.has_pose ? idOf(scans, i) : std::nullopt;
+        const std::optional<Cloud> cloud = id ? storedCloud(transaction, *id) : std::nullopt;
+        if (!cloud || (cloud->has_pose && cloud->T_map_sensor.matrix() == file.T_map_sensor.matrix())) continue;
+        if (!poses.emplace(*id, ScanPose{*id, file.T_map_sensor}).second) ambiguous.insert(*id);  // one scan, two files
+      }
+    }
+    for (const scan::ScanId& id : ambiguous) poses.erase(id);
+    notePlaces(scans.only(candidates));
+    if (poses.empty()) return false;
+    std::vector<ScanPose> moves;
+    for (const auto& [id, pose] : poses) moves.push_back(pose);
+    const ChangeReport report = moveScans(map_, moves, {.threads = params_.threads}, sink_);
+    sink_.note(std::to_string(moves.size()) + " scans have other poses now, and are moved");
+    tell(0, report.scans, report.object_count);
+    return true;
+  }
+
+  /// Absent when the scan cannot be read.
+  static std::optional<scan::ScanId> idOf(const scan::ScanSet& scans, std::size_t i) {
+    try {
+      return scans.load(i).id;
+    } catch (const InputError&) {
+      return std::nullopt;
+    }
   }
 
   bool isDone(const FolderState::value_type& file) const {
@@ -92,21 +148,27 @@ class Watch {
     return done != done_.end() && done->second == file.second;
   }
 
-  /// Adds scans in one commit, without those that cannot be read; or one by one, when they do not fit together.
-  bool add(const scan::ScanSet& scans, const std::vector<std::size_t>& fresh) {
+  /// Adds scans in one commit, without those that cannot be read; or one by one, when they do not fit together. Scans
+  /// that an earlier watch added with other poses are moved.
+  bool add(const scan::ScanSet& scans, const std::vector<std::size_t>& fresh, bool may_move = true) {
     try {
       commit(scans.only(fresh));
+      notePlaces(scans.only(fresh));
       return true;
     } catch (const InputError& fault) {
+      if (may_move && is_built_ && move(scans, fresh)) {
+        add(scans, fresh, false);
+        return true;
+      }
       if (fresh.size() == 1) {
         noteFaulty(fault);
         return false;
       }
     }
     const std::vector<std::size_t> readable = readableOf(scans, fresh);
-    if (readable.size() < fresh.size()) return !readable.empty() && add(scans, readable);
+    if (readable.size() < fresh.size()) return !readable.empty() && add(scans, readable, may_move);
     bool any = false;
-    for (const std::size_t i : fresh) any = add(scans, {i}) || any;
+    for (const std::size_t i : fresh) any = add(scans, {i}, false) || any;
     return any;
   }
 
@@ -148,9 +210,10 @@ class Watch {
   const WatchParams& params_;
   const WatchCallbacks& callbacks_;
   ProgressSink& sink_;
-  MapExtension extension_;  ///< the next commit writes into the space that one leaves
-  ProgressSink quiet_;      ///< opening a set notes the same at each look
-  FolderState done_;        ///< scans that were added, or could not be read, as they were then
+  MapExtension extension_;                        ///< the next commit writes into the space that one leaves
+  ProgressSink quiet_;                            ///< opening a set notes the same at each look
+  std::map<fs::path, Eigen::Isometry3d> placed_;  ///< with which poses scans were added or moved
+  FolderState done_;                              ///< scans that were added, or could not be read, as they were then
   std::string last_fault_;
   bool is_built_ = false;  ///< nothing is left of a first build
   std::size_t added_ = 0;

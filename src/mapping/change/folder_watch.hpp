@@ -25,10 +25,10 @@ struct WatchCallbacks {
 };
 
 /// Looks at `folder` again and again. Scans whose files have not changed since the last look are added to the map in
-/// one commit, which is then the exact map of all scans so far; the first ones build it when it is not there. Until a
-/// folder can be read as a set of scans (a pose is still missing), it waits. A fault that stays for two looks is a
-/// note, and so is a scan that cannot be read, which is tried again when its file changes. Throws Error for faults of
-/// the map. Returns the number of scans that were added.
+/// one commit, which is then the exact map of all scans so far; scans whose poses are corrected meanwhile are moved;
+/// the first ones build it when it is not there. Until a folder can be read as a set of scans (a pose is still
+/// missing), it waits. A fault that stays for two looks is a note, and so is a scan that cannot be read, which is tried
+/// again when its file changes. Throws Error for faults of the map. Returns the number of scans that were added.
 std::size_t watchFolder(const std::filesystem::path& folder, const std::filesystem::path& map,
                         const WatchParams& params, const WatchCallbacks& callbacks, ProgressSink& sink);
 
