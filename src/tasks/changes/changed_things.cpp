@@ -100,9 +100,18 @@ class Things {
     if (most->first != mapping::kNoObject) {
       thing.object = most->first;
       const auto stable = survey_.stable_of_object.find(most->first);
-      thing.is_part = stable != survey_.stable_of_object.end() && stable->second > most->second;
+      thing.is_part =
+          (stable != survey_.stable_of_object.end() && stable->second > most->second) || !isGoneAsWhole(most->first);
     }
     things_.push_back(std::move(thing));
+  }
+
+  /// Whether the whole object is absent at the other time. An object without a state counts as such.
+  bool isGoneAsWhole(std::uint32_t object) const {
+    const auto states = std::lower_bound(survey_.states.begin(), survey_.states.end(), object,
+                                         [](const ObjectStates& a, std::uint32_t b) { return a.object < b; });
+    if (states == survey_.states.end() || states->object != object) return true;
+    return (time_ == kBefore ? states->after : states->before) == perception::PresenceState::Absent;
   }
 
   bool isNearChange(const Eigen::AlignedBox3d& box, std::size_t clusters) const {

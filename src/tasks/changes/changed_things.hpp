@@ -15,7 +15,7 @@ namespace cluxel::tasks {
 struct ChangedThing {
   std::vector<std::uint32_t> cluxels;   ///< numbers in the scene of the map, ascending
   std::optional<std::uint32_t> object;  ///< that most of them belong to; absent when most belong to none
-  bool is_part = false;                 ///< more of that object is there before and after than changed
+  bool is_part = false;                 ///< that object is not absent as a whole, or more of it stays than changed
   Eigen::AlignedBox3d box;              ///< [m, map]
 };
 

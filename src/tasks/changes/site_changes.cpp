@@ -76,6 +76,7 @@ std::vector<SiteChange> withMoves(const mapping::MapReader& map, const ChangedTh
   std::vector<std::tuple<double, std::size_t, std::size_t>> pairs;
   for (std::size_t i = 0; i < gone.size(); ++i)
     for (std::size_t j = 0; j < come.size(); ++j) {
+      if (gone[i].object && gone[i].object == come[j].object) continue;  // two parts of one object
       const double distance = (gone[i].box.center() - come[j].box.center()).norm();
       if (distance <= kMaxMove_m && areOfOneSize(gone[i].box.sizes(), come[j].box.sizes()) &&
           classOf(map, gone[i]) == classOf(map, come[j]))
