@@ -86,6 +86,26 @@ TEST_F(ChangeCommands, ExtendGivesTheMapOfAllScans) {
   EXPECT_THAT(run("extend " + map + " " + in("campus")).out, HasSubstr("nothing changes; all scans are there"));
 }
 
+TEST_F(ChangeCommands, ExtendTellsOfOtherTimes) {
+  const std::string map = copied("whole.clx"), later = moved("later", 0);
+  const auto writeTimes = [&](int shift_s) {
+    std::string text;
+    std::istringstream lines(readFile(path("campus/times.txt")));
+    for (std::string line; std::getline(lines, line);)
+      if (!line.starts_with('#')) text += std::to_string(std::stod(line) + shift_s) + "\n";
+    writeFile(path("later/times.txt"), text);
+  };
+  writeTimes(-60);
+  const Outcome earlier = run("extend " + map + " " + later);
+  EXPECT_THAT(earlier.out, HasSubstr("nothing changes"));
+  EXPECT_THAT(earlier.err, HasSubstr("stays; to correct it, retract the scan"));
+  writeTimes(60);
+  EXPECT_THAT(run("extend " + map + " " + later).err, HasSubstr("is taken"));
+  ASSERT_EQ(build(later, "later.clx"), 0);
+  EXPECT_TRUE(canonical("copy.clx") == canonical("later.clx"));
+  expectError(run("extend " + map + " " + in("a.clx")), 2, "is a map, not a scan");
+}
+
 TEST_F(ChangeCommands, RetractTakesScansOutAndMayBeRepeated) {
   const std::string map = copied("whole.clx");
   const Outcome first = run("retract " + map + " scan_002.pcd scan_003.pcd");
@@ -125,6 +145,9 @@ TEST_F(ChangeCommands, MergeMakesTheMapOfAllScansAndMayBeRepeated) {
   EXPECT_FALSE(fs::exists(path("merged.clx"))) << "a dry run wrote";
   ASSERT_EQ(run(merge).code, 0);
   EXPECT_TRUE(canonical("merged.clx") == canonical("whole.clx"));
+  writeFile(path("identity.txt"), "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1\n");
+  ASSERT_EQ(run("merge " + maps + " -o " + in("by_identity.clx") + " --transform " + in("identity.txt")).code, 0);
+  EXPECT_TRUE(canonical("by_identity.clx") == canonical("whole.clx"));
   const std::string bytes = readFile(path("merged.clx"));
   const Outcome again = run(merge);
   EXPECT_EQ(again.code, 0) << again.err;

@@ -99,9 +99,10 @@ void printChange(const fs::path& map, const ChangeReport& report, const mapping:
   const mapping::ObjectChanges& objects = report.objects;
   const auto own = [](const ContentHash& id) { return id; };
   const auto derived = [](const DerivedObject& object) { return object.id; };
-  std::printf("%s%s: %zu scans added, %zu removed, %zu moved; %zu of %zu tiles computed anew, %zu decided anew\n",
-              map.c_str(), params.dry_run ? " (dry run, nothing written)" : "", report.scans_added,
-              report.scans_removed, report.scans_moved, report.tiles_changed, report.tiles, report.tiles_decided);
+  std::printf(
+      "%s%s: %zu scans added, %zu removed, %zu moved; %zu tiles computed anew, %zu decided anew; the map has %zu\n",
+      map.c_str(), params.dry_run ? " (dry run, nothing written)" : "", report.scans_added, report.scans_removed,
+      report.scans_moved, report.tiles_changed, report.tiles_decided, report.tiles);
   std::printf("objects: %zu unchanged\n", objects.unchanged);
   std::printf("  %zu added%s\n", objects.added.size(), byClass(objects.added, after, own).c_str());
   std::printf("  %zu gone%s\n", objects.gone.size(), byClass(objects.gone, before, own).c_str());

@@ -10,6 +10,7 @@
 #include "mapping/change/map_change.hpp"
 #include "mapping/change/map_merge.hpp"
 #include "mapping/map_reader.hpp"
+#include "rdf/file/map_check.hpp"
 #include "scan/poses/pose_files.hpp"
 
 namespace cluxel::app {
@@ -25,6 +26,9 @@ struct ChangeOptions {
 };
 
 ExitCode extend(const ChangeOptions& options, Session& session) {
+  for (const fs::path& input : options.inputs)
+    if (std::error_code ignored; fs::is_regular_file(input, ignored) && rdf::looksLikeMap(input))
+      throw Error(ErrorKind::InvalidArgument, input.string() + ": is a map, not a scan", Remedy::MergeMaps);
   const scan::ScanSet scans = scan::ScanSet::open(options.inputs, options.scans.params(), session.console);
   mapping::ChangeParams params = options.change;
   params.threads = session.threadCount();
@@ -94,6 +98,7 @@ ExitCode merge(const MergeOptions& options, Session& session) {
       throw Error(ErrorKind::FaultyInput, options.transform.string() + ": holds " + std::to_string(poses.size()) +
                                               " transforms; one is needed");
     maps.back().T_first_map = poses.front();
+    maps.back().has_transform = true;
   }
   mapping::MergeParams params = options.params;
   params.change.threads = session.threadCount();

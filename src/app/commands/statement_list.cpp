@@ -14,7 +14,8 @@ using mapping::KnownStatement;
 std::string lineOfKnown(const KnownStatement& known) {
   std::string line = known.statement.id().hex() + "  " + textOf(known.statement) + "  " + known.effect;
   if (!known.object.empty()) line += " to object/" + mapping::localName(known.object);
-  if (known.contradicts) line += ", against the rules, which say " + mapping::localName(known.rules_class);
+  if (known.contradicts) line += ", against the rules";
+  if (known.contradicts && !known.rules_class.empty()) line += ", which say " + mapping::localName(known.rules_class);
   if (!known.author.empty()) line += "; by " + known.author;
   if (!known.stated_at.empty()) line += (known.author.empty() ? "; " : " ") + known.stated_at;
   return line;

@@ -28,6 +28,14 @@ const char* hintFor(Remedy remedy) {
       return "--param NAME=VALUE gives a parameter its value; 'cluxel tasks' lists the parameters";
     case Remedy::LocalFrame:
       return "--local writes metres of the map frame instead";
+    case Remedy::NameTransform:
+      return "--transform FILE names the matrix from the second map to the first";
+    case Remedy::ChooseInputs:
+      return "--use MAP names that map";
+    case Remedy::MoveScans:
+      return "'cluxel repose MAP SCANS' gives clouds of a map other poses";
+    case Remedy::MergeMaps:
+      return "'cluxel merge MAP MAP -o MAP' makes one map of several";
   }
   return "";
 }

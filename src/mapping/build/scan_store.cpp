@@ -117,7 +117,7 @@ bool isThere(rdf::WriteTransaction& transaction, const Cloud& given) {
                           : given.has_pose                  ? "now with a pose"
                                                             : "now without a pose";
   throw InputError({.file = given.source}, "is the same scan as '" + there->source + "', " + how,
-                   "give each scan once; to correct its pose, move the scan in the map");
+                   "give each scan once; to correct its pose, move the scan in the map", Remedy::MoveScans);
 }
 
 /// Whether points of the cloud can lie in one of the tiles, by its bounds.

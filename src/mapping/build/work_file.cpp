@@ -6,6 +6,7 @@
 #include "cluxel/error.hpp"
 #include "mapping/build/operator_statements.hpp"
 #include "mapping/map_tables.hpp"
+#include "mapping/statements/statement.hpp"
 #include "rdf/file/map_replacement.hpp"
 #include "rdf/store/quad_store.hpp"
 
@@ -123,9 +124,10 @@ void WorkFile::takeOverStatements(rdf::WriteTransaction& into, bool drop, Progre
   }
   clearOperatorStatements(into);
   if (drop) return;
-  const std::uint64_t count =
-      copyOperatorStatements(rdf::QuadReader(static_cast<const rdf::ReadTransaction&>(*replaced_)), into);
-  if (count > 0) sink.note(std::to_string(count) + " operator statements of the old map are kept");
+  const rdf::QuadReader old(static_cast<const rdf::ReadTransaction&>(*replaced_));
+  if (const std::uint64_t quads = copyOperatorStatements(old, into); quads > 0)
+    sink.note(std::to_string(storedStatements(old).size()) + " operator statements of the old map are kept (" +
+              std::to_string(quads) + " quads)");
 }
 
 void WorkFile::finish() {

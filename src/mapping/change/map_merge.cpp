@@ -96,16 +96,18 @@ class Merge {
     for (std::size_t i = 0; i < readers_.size(); ++i) {
       const auto environment = rdf::Environment::open(maps_[i].file, rdf::OpenMode::ReadOnly);
       const MapInputs mine = requireFinishedInputs(environment->read(), maps_[i].file);
-      const bool moved = !maps_[i].T_first_map.matrix().isIdentity(0);
+      const bool moved = maps_[i].has_transform || !maps_[i].T_first_map.matrix().isIdentity(0);
       if (!moved && (mine.map_origin != first.map_origin || mine.crs != first.crs))
-        throw Error(ErrorKind::InvalidArgument, maps_[i].file.string() +
-                                                    ": has another map origin or coordinate system than " +
-                                                    maps_[0].file.string() + "; name the transform between the frames");
+        throw Error(ErrorKind::InvalidArgument,
+                    maps_[i].file.string() + ": has another map origin or coordinate system than " +
+                        maps_[0].file.string() + "; name the transform between the frames",
+                    Remedy::NameTransform);
       const auto differences = differencesOf(first, mine);
       if (!differences.empty() && !params_.use)
-        throw Error(ErrorKind::InvalidArgument, maps_[i].file.string() + ": differs from " + maps_[0].file.string() +
-                                                    " in: " + joined(differences) +
-                                                    "; choose the map whose ontology, rules and model are used");
+        throw Error(ErrorKind::InvalidArgument,
+                    maps_[i].file.string() + ": differs from " + maps_[0].file.string() +
+                        " in: " + joined(differences) + "; choose the map whose ontology, rules and model are used",
+                    Remedy::ChooseInputs);
     }
   }
 
@@ -273,7 +275,8 @@ class Merge {
   void replaceTarget() {
     if (!fs::exists(target_)) return rdf::replaceMapFile(beside_, target_);
     const rdf::WriteTransaction old = rdf::writeMap(target_);
-    sink_.note(target_.string() + ": is replaced; operator statements that it had are dropped");
+    if (!operatorStatements(rdf::QuadReader(static_cast<const rdf::ReadTransaction&>(old))).empty())
+      sink_.note(target_.string() + ": is replaced; the operator statements that it had are dropped");
     rdf::replaceMapFile(beside_, target_);
   }
 

@@ -14,6 +14,9 @@ struct MapToMerge {
   std::filesystem::path file;
   /// From this map's frame to that of the first map.
   Eigen::Isometry3d T_first_map = Eigen::Isometry3d::Identity();
+  /// The transform was measured, also when it is the identity: the map may have another map origin or coordinate
+  /// system.
+  bool has_transform = false;
 };
 
 struct MergeParams {

@@ -6,6 +6,7 @@
 #include <iterator>
 #include <utility>
 
+#include "base/utc_time.hpp"
 #include "mapping/build/batch_size.hpp"
 #include "mapping/map_tables.hpp"
 #include "mapping/presence/object_rows.hpp"
@@ -19,8 +20,7 @@ void ScanAdditions::add(const scan::Scan& scan, std::size_t scans_left) {
   auto segments = storeScan(*transaction_, scan);
   if (segments.empty()) {
     ++editor_.result().scans_already_there;
-    // The scan's time may be later than the one that was known.
-    has_other_changes_ = has_other_changes_ || storedCloud(*transaction_, scan.id)->time_s != known->time_s;
+    noteOtherTime(scan, known->time_s, storedCloud(*transaction_, scan.id)->time_s);
     return;
   }
   noteAdded(*storedCloud(*transaction_, scan.id));
@@ -30,6 +30,17 @@ void ScanAdditions::add(const scan::Scan& scan, std::size_t scans_left) {
   if (!isFull(part_points_, part_scans_, scans_left, editor_.params().stage_points)) return;
   editor_.update(*transaction_, std::exchange(changes_, {}), editor_.sink());
   part_points_ = 0, part_scans_ = 0;
+}
+
+void ScanAdditions::noteOtherTime(const scan::Scan& scan, std::optional<double> before_s, std::optional<double> now_s) {
+  has_other_changes_ = has_other_changes_ || now_s != before_s;
+  if (scan.time_s == before_s) return;
+  const std::string what = "'" + scan.source + "' is there with another time: ";
+  if (now_s != before_s)
+    editor_.sink().note(what + "the later one, " + dateTimeText(*now_s) + ", is taken");
+  else if (scan.time_s)
+    editor_.sink().note(what + "the later one, " + dateTimeText(*now_s) +
+                        ", stays; to correct it, retract the scan and add it again");
 }
 
 void ScanAdditions::noteAdded(const Cloud& cloud) {
@@ -66,8 +77,8 @@ rdf::WriteTransaction& ScanAdditions::transaction() {
 }
 
 void ScanAdditions::finish() {
-  editor_.result().scans_added += added_.size();
   if (!added_.empty() || has_other_changes_) editor_.commit(*transaction_, operation_, std::move(changes_), added_);
+  editor_.result().scans_added += added_.size();
   transaction_.reset();
   changes_ = {};
   added_.clear();

@@ -28,6 +28,8 @@ class ScanAdditions {
 
  private:
   void noteAdded(const Cloud& cloud);
+  /// A scan that is there may be given with another time.
+  void noteOtherTime(const scan::Scan& scan, std::optional<double> before_s, std::optional<double> now_s);
 
   MapEditor& editor_;
   std::string operation_;

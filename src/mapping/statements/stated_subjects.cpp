@@ -67,9 +67,13 @@ void anchorStatedObjects(rdf::WriteTransaction& transaction, const ParsedInputs&
   StatedObjects objects(transaction, parsed);
   rdf::QuadWriter writer(transaction);
   std::size_t anchored = 0;
+  std::set<std::string> unknown;
   for (const Quad& quad : about_objects) {
     auto anchor = objects.anchorOfIri(quad.subject.text);
-    if (!anchor) continue;
+    if (!anchor) {
+      unknown.insert(quad.subject.text);
+      continue;
+    }
     const Statement statement = statementOf(quad, std::move(*anchor), parsed.rules.catalogue);
     writer.remove(rdf::QuadIds{writer.intern(quad.subject), writer.intern(quad.predicate), writer.intern(quad.object),
                                writer.intern(quad.graph)});
@@ -77,6 +81,10 @@ void anchorStatedObjects(rdf::WriteTransaction& transaction, const ParsedInputs&
     ++anchored;
   }
   writer.flush();
+  if (!unknown.empty())
+    sink.note(*unknown.begin() +
+              (unknown.size() > 1 ? " and " + std::to_string(unknown.size() - 1) + " more are" : " is") +
+              " no object that this map has or had: what is stated of it changes no object, but queries find it");
   if (anchored > 0) sink.note(std::to_string(anchored) + " statements about objects are anchored to their points");
 }
 
