@@ -75,6 +75,7 @@ TEST_F(StateCommand, RefusesToTakeAllGroundAway) {
   for (const char* statement : {" --remove", " --is-not clx:Ground", " --is clx:Building"})
     expectError(state(ground + statement), 2, "is all clx:Ground of the map");
   EXPECT_EQ(state(ground + " --label yard").code, 0);
+  expectError(state("--object " + one("Tree") + " --is clx:Ground"), 2, "is one object over all of the map");
 }
 
 TEST_F(StateCommand, DoesNotMakeAndWithdrawTheSameStatement) {

@@ -45,6 +45,7 @@ bool takeNewStatements(rdf::WriteTransaction& transaction, const rules::ClassCat
   std::vector<ContentHash> made;
   for (const Statement& statement : news.made) {
     requireStatable(statement, classes);
+    requireNoWholeClass(transaction, statement);
     made.push_back(statement.id());
   }
   recordStatements(transaction, made, news.withdrawn, author);

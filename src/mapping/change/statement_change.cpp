@@ -45,6 +45,7 @@ ChangeReport changeStatements(const std::filesystem::path& file, const Statement
     has_changes = has_changes || was_there;
   }
   for (const Statement& statement : edit.added) {
+    requireNoWholeClass(transaction, statement);
     const bool is_new = addStatement(transaction, statement, edit.author);
     if (!is_new) sink.note("the statement " + statement.id().hex() + " was made already");
     has_changes = has_changes || is_new;

@@ -8,7 +8,9 @@
 
 #include "base/utf8.hpp"
 #include "cluxel/error.hpp"
+#include "mapping/layers/stored_layers.hpp"
 #include "rdf/vocabulary.hpp"
+#include "rules/objects/finished_objects.hpp"
 
 namespace cluxel::mapping {
 
@@ -109,6 +111,15 @@ void requireStatable(const Statement& statement, const rules::ClassCatalogue& cl
                 "<" + statement.property + "> of an object is a blank node; state an IRI or a literal");
   if (firstInvalidUtf8(statement.value.text))
     throw Error(ErrorKind::InvalidArgument, "the value of <" + statement.property + "> is not UTF-8");
+}
+
+void requireNoWholeClass(const rdf::ReadTransaction& transaction, const Statement& statement) {
+  if (statement.kind != StatementKind::Is || !storedRecord(transaction, rules::idOfClassWide(statement.value.text)))
+    return;
+  throw Error(ErrorKind::InvalidArgument,
+              "<" + statement.value.text +
+                  "> is one object over all of the map, which nothing else can become; state "
+                  "that the object is removed");
 }
 
 }  // namespace cluxel::mapping

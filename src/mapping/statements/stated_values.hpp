@@ -3,6 +3,7 @@
 #pragma once
 
 #include "mapping/statements/statement.hpp"
+#include "rdf/file/environment.hpp"
 #include "rules/language/class_catalogue.hpp"
 
 namespace cluxel::mapping {
@@ -14,5 +15,9 @@ void requireStatable(const std::string& property);
 /// objects (a part, a place, a cluxel), and a region without area or with a corner farther than 1000 km from its scan.
 /// Throws Error (NotFound) for a class that the ontology does not know.
 void requireStatable(const Statement& statement, const rules::ClassCatalogue& classes);
+
+/// Throws Error (InvalidArgument) for the statement that something is of a class of which the map has one object over
+/// all of it, as the ground.
+void requireNoWholeClass(const rdf::ReadTransaction& transaction, const Statement& statement);
 
 }  // namespace cluxel::mapping

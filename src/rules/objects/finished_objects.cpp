@@ -58,8 +58,12 @@ bool isClassWide(const ReasoningState& state, const ObjectInMaking& object) {
 
 }  // namespace
 
+ContentHash idOfClassWide(const std::string& class_iri) {
+  return ContentHasher().addText(class_iri).addText("class-wide").finish();
+}
+
 ContentHash idOf(const perception::Scene& scene, const SemanticObject& object) {
-  if (object.is_class_wide) return ContentHasher().addText(object.class_iri).addText("class-wide").finish();
+  if (object.is_class_wide) return idOfClassWide(object.class_iri);
   std::vector<std::uint64_t> members;  // scan and point, which sort as pairs do
   for (const ObjectPart& part : object.parts)
     for (const std::uint32_t cluxel : part.cluxels)
