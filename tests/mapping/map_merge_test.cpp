@@ -174,9 +174,16 @@ TEST_F(MapMerge, CountsScansThatBothHoldOnce) {
 TEST_F(MapMerge, BringsTheSecondMapIntoTheFrameOfTheFirst) {
   Eigen::Isometry3d shift = Eigen::Isometry3d::Identity();  // exact in binary, so that no coordinate is rounded twice
   shift.translation() = Eigen::Vector3d(64, -128, 0.5);
-  const fs::path a = built({0, 1}, "a"), b = built({2, 3}, "b", shift.inverse());
-  merge({{a}, {b, shift}});
-  EXPECT_TRUE(canonicalText(target()) == *whole);
+  Eigen::Isometry3d turned = shift;  // by a right angle, which is exact, too
+  turned.linear() << 0, -1, 0, 1, 0, 0, 0, 0, 1;
+  const fs::path a = built({0, 1}, "a");
+  for (const Eigen::Isometry3d& T : {shift, turned}) {
+    const fs::path b = built({2, 3}, "b", T.inverse());
+    fs::remove(target());
+    merge({{a}, {b, T}});
+    EXPECT_TRUE(canonicalText(target()) == *whole);
+    fs::remove(b);
+  }
 }
 
 TEST_F(MapMerge, KeepsTheStatementsOfAllMaps) {
