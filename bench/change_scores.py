@@ -20,10 +20,11 @@ Lamps that were replaced are left out: another pole stands in the same place.
 Of the objects that are not observed, those are counted that a report says to be gone: as a state, or as a change that
 matches their box.
 
-Points (`changes --points`), as the DynamicMap benchmark counts them. A point of an earlier scan is dynamic when its object leaves or moves
-later, a point of a later scan when its object has arrived or moved. Static accuracy is the share of static points that are not reported
-as changed, dynamic accuracy the share of dynamic points that are, associated accuracy the root of their product. Objects
-that were cut or replaced are left out: no truth tells which of their points stay.
+Points (`changes --points`), as the DynamicMap benchmark counts them. A point of an earlier scan is dynamic when its
+object leaves or moves later, a point of a later scan when its object has arrived or moved. Static accuracy is the share
+of static points that are not reported as changed, dynamic accuracy the share of dynamic points that are, associated
+accuracy the root of their product. Objects that were cut or replaced are left out: no truth tells which of their points
+stay.
 """
 import csv
 import datetime

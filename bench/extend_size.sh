@@ -16,6 +16,7 @@ mkdir -p "$out"
 map=$out/map.clx last=scan_0000_011
 
 median() { sort -n | awk '{ v[NR] = $1 } END { print v[int((NR + 1) / 2)] }'; }
+median_of() { cut -d' ' -f"$2" "$out/$1" | median; } # median_of FILE COLUMN: of what bench/measured.py printed
 scans_of() { # scans_of DISTRICTS: simulates what is missing of the first districts
   for ((number = 0; number < $1; ++number)); do
     local name
@@ -62,17 +63,16 @@ for millions in "$@"; do
   for ((number = 1; number < districts; ++number)); do inputs+=("$out/$(printf 'district_%04d' "$number")"); done
   line=$("$here/measured.py" "$cluxel" --threads 1 build "${inputs[@]}" -o "$out/before.clx" --force)
   read -r build_s _ build_mb <<<"$line"
-  : >"$out/rounds" && : >"$out/moves" && : >"$out/retractions"
+  : >"$out/extensions" && : >"$out/moves" && : >"$out/retractions"
   for ((i = 0; i < rounds; ++i)); do
     cp "$out/before.clx" "$map"
-    "$here/measured.py" --output "$out/report.json" "$cluxel" --threads 1 extend "$map" "$out/last" --json >>"$out/rounds"
+    "$here/measured.py" --output "$out/report.json" "$cluxel" --threads 1 extend "$map" "$out/last" --json >>"$out/extensions"
     cp "$map" "$out/extended.clx"
     "$here/measured.py" "$cluxel" --threads 1 repose "$map" "$out/moved" >>"$out/moves"
     "$here/measured.py" "$cluxel" --threads 1 retract "$map" "$last.pcd" >>"$out/retractions"
     mv "$out/extended.clx" "$map"
   done
-  median_of() { cut -d' ' -f"$2" "$out/$1" | median; }
-  extend_s=$(cut -d' ' -f1 "$out/rounds" | median) extend_mb=$(cut -d' ' -f3 "$out/rounds" | median)
+  extend_s=$(median_of extensions 1) extend_mb=$(median_of extensions 3)
   python3 - "$out/report.json" "$millions" "$build_s" "$build_mb" "$extend_s" "$extend_mb" "$cut" \
     "$(median_of moves 1)" "$(median_of moves 3)" "$(median_of retractions 1)" "$(median_of retractions 3)" <<'PY'
 import json, sys

@@ -100,7 +100,8 @@ void printChange(const fs::path& map, const ChangeReport& report, const mapping:
   const auto own = [](const ContentHash& id) { return id; };
   const auto derived = [](const DerivedObject& object) { return object.id; };
   std::printf(
-      "%s%s: %zu scans added, %zu removed, %zu moved; %zu tiles computed anew, %zu decided anew; the map has %zu\n",
+      "%s%s: %zu scans added, %zu removed, %zu moved; %zu tiles computed anew, %zu decided anew; the map has %zu "
+      "tiles\n",
       map.c_str(), params.dry_run ? " (dry run, nothing written)" : "", report.scans_added, report.scans_removed,
       report.scans_moved, report.tiles_changed, report.tiles_decided, report.tiles);
   std::printf("objects: %zu unchanged\n", objects.unchanged);
