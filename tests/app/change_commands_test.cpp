@@ -98,9 +98,9 @@ TEST_F(ChangeCommands, ExtendTellsOfOtherTimes) {
   writeTimes(-60);
   const Outcome earlier = run("extend " + map + " " + later);
   EXPECT_THAT(earlier.out, HasSubstr("nothing changes"));
-  EXPECT_THAT(earlier.err, HasSubstr("stays; to correct it, retract the scan"));
+  EXPECT_THAT(earlier.err, HasSubstr("4 known scans are given earlier times; the later ones stay"));
   writeTimes(60);
-  EXPECT_THAT(run("extend " + map + " " + later).err, HasSubstr("is taken"));
+  EXPECT_THAT(run("extend " + map + " " + later).err, HasSubstr("4 known scans have later times now"));
   ASSERT_EQ(build(later, "later.clx"), 0);
   EXPECT_TRUE(canonical("copy.clx") == canonical("later.clx"));
   expectError(run("extend " + map + " " + in("a.clx")), 2, "is a map, not a scan");

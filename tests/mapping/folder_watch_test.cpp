@@ -140,7 +140,8 @@ TEST_F(FolderWatch, MovesScansWhosePosesAreCorrected) {
     }
   });
   EXPECT_THAT(totals, ::testing::ElementsAre(2, 2, 3));
-  EXPECT_THAT(notes.all, ::testing::Contains(::testing::HasSubstr("1 scans have other poses now")));
+  EXPECT_THAT(notes.all,
+              ::testing::Contains(::testing::HasSubstr("scans moved to the poses that the folder has now: 1")));
   EXPECT_TRUE(canonicalText(map()) == builtText({scans()}, *inputs));
   // Corrected while nobody watched.
   writePoses(poses, campus->files(), 3, 0);

@@ -4,8 +4,8 @@
 #include "mapping/change/folder_watch.hpp"
 #include "mapping/change/map_compaction.hpp"
 #include "mapping/change/statement_change.hpp"
+#include "mapping/free_space.hpp"
 #include "mapping/killed_change.hpp"
-#include "mapping/map_tables.hpp"
 
 namespace cluxel::mapping {
 namespace {
@@ -13,18 +13,6 @@ namespace {
 class KilledBuild : public KilledChange {
  protected:
   unsigned threads() const { return params().threads; }
-  /// Leaves free pages: the bytes are written in one commit and erased in the next.
-  static void leaveFree(const fs::path& map, std::size_t bytes) {
-    const auto environment = Environment::open(map, OpenMode::ReadWrite);
-    for (const bool is_there : {true, false}) {
-      WriteTransaction transaction = environment->write();
-      if (is_there)
-        transaction.putBlock(tables::kTexts, "much", std::string(bytes, 'x'));
-      else
-        transaction.eraseBlock(tables::kTexts, "much");
-      transaction.commit();
-    }
-  }
 };
 
 TEST_F(KilledBuild, GoesOn) {

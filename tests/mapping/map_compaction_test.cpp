@@ -7,7 +7,7 @@
 #include <unistd.h>
 
 #include "base/file_bytes.hpp"
-#include "mapping/map_tables.hpp"
+#include "mapping/free_space.hpp"
 #include "mapping/small_campus.hpp"
 
 namespace cluxel::mapping {
@@ -29,18 +29,6 @@ class MapCompaction : public testing::Test {
     fs::remove(map.string() + "-lock");
     fs::copy_file(folder->path() / "built.clx", map, fs::copy_options::overwrite_existing);
     return map;
-  }
-  /// Leaves free pages: the bytes are written in one commit and erased in the next.
-  static void leaveFree(const fs::path& map, std::size_t bytes) {
-    const auto environment = Environment::open(map, OpenMode::ReadWrite);
-    for (const bool is_there : {true, false}) {
-      WriteTransaction transaction = environment->write();
-      if (is_there)
-        transaction.putBlock(tables::kTexts, "much", std::string(bytes, 'x'));
-      else
-        transaction.eraseBlock(tables::kTexts, "much");
-      transaction.commit();
-    }
   }
 
   inline static ScratchFolder* folder = nullptr;

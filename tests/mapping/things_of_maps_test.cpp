@@ -61,7 +61,7 @@ void expectNamesToGoOn(const Names& before, const Names& after, const ObjectChan
   for (const auto& [object, thing] : after) held.insert(thing);
   for (const auto& [object, count] : heirs) {
     EXPECT_LE(count, 1U);
-    EXPECT_TRUE(count == 1 || held.contains(before.at(object)) || !changes.joined.empty()) << "a name was lost";
+    EXPECT_TRUE(held.contains(before.at(object))) << "a name was lost";
   }
 }
 

@@ -16,9 +16,9 @@ inline bool isFull(std::uint64_t points, std::size_t scans, std::size_t scans_le
   return left > static_cast<double>(max_points) / 2;
 }
 
-/// The points of one part of a change that reaches `points` of the `map_points` of a map. Less than half a part more
-/// than `max_points` is one part. Else a part has a quarter of the map at most: only what is well below the whole map
-/// is computed around the change.
+/// How many points go into one part of a change that reaches `points` of the `map_points` of a map. Up to one and a
+/// half times `max_points` are one part. Else a part has at most a quarter of the map: a larger one would be computed
+/// over the whole map, not around the part.
 inline std::uint64_t partSize(std::uint64_t points, std::uint64_t map_points, std::uint64_t max_points) {
   if (static_cast<double>(points) < 1.5 * static_cast<double>(max_points)) return points;
   return std::max<std::uint64_t>(1, std::min(max_points, map_points / 4));

@@ -129,7 +129,7 @@ class Watch {
     std::vector<ScanPose> moves;
     for (const auto& [id, pose] : poses) moves.push_back(pose);
     const ChangeReport report = moveScans(map_, moves, {.threads = params_.threads}, sink_);
-    sink_.note(std::to_string(moves.size()) + " scans have other poses now, and are moved");
+    sink_.note("scans moved to the poses that the folder has now: " + std::to_string(moves.size()));
     tell(0, report.scans, report.object_count);
     return true;
   }

@@ -144,6 +144,7 @@ std::vector<Move> movesTo(const std::vector<ScanPose>& poses, const rdf::ReadTra
   return moves;
 }
 
+/// The tiles that the bounds of a cloud reach.
 TileSet tilesBelow(const Cloud& cloud) {
   TileSet tiles;
   const perception::TileKey first = perception::tileOf(cloud.min), last = perception::tileOf(cloud.max);

@@ -157,8 +157,8 @@ SemanticUpdate MapEditor::decide(rdf::WriteTransaction& transaction, PointChange
 }
 
 /// After each part the map follows from the outputs that its tiles have then. So only what follows from the part has to
-/// be decided. Statements about points of later parts may be lost meanwhile: they are found when their part comes. When
-/// a part cannot be decided alone, the rest is decided with it as a whole.
+/// be decided. A statement may find no object while its points lie in a later part; it is applied when that part comes.
+/// When a part cannot be decided alone, the rest is decided with it as a whole.
 SemanticUpdate MapEditor::decideInParts(rdf::WriteTransaction& transaction, std::vector<TileSet> parts,
                                         ProgressSink& sink) {
   all_tiles_ = false;

@@ -69,11 +69,11 @@ class Merge {
     requireDifferentFiles();
     for (const MapToMerge& map : maps_) readers_.emplace_back(map.file);
     requireEqualInputs();
+    base_ = largest();
     if (fs::exists(target_) && !params_.force) return reportOfMerged();
-    const std::size_t base = largest();
     removeBeside();
-    rdf::Environment::open(maps_[base].file, rdf::OpenMode::ReadOnly)->compactTo(beside_);
-    ChangeReport report = addOthers(base);
+    rdf::Environment::open(maps_[base_].file, rdf::OpenMode::ReadOnly)->compactTo(beside_);
+    ChangeReport report = addOthers();
     if (!params_.change.dry_run) replaceTarget();
     return report;
   }
@@ -191,24 +191,24 @@ class Merge {
     return best;
   }
 
-  ChangeReport addOthers(std::size_t base) {
+  ChangeReport addOthers() {
     ChangeParams change = params_.change;
     change.dry_run = false;  // the copy may be written: it becomes the target only at the end
     MapEditor editor(beside_, change, sink_);
-    if (editor.inputs().inputs.hash() != readers_[base].inputs().hash())
+    if (editor.inputs().inputs.hash() != readers_[base_].inputs().hash())
       throw Error(ErrorKind::StoreUnavailable,
-                  maps_[base].file.string() + ": another program has changed it meanwhile; run the command again");
+                  maps_[base_].file.string() + ": another program has changed it meanwhile; run the command again");
     editor.setInputs(parseInputs(inputsOfResult()));
     ScanAdditions additions(editor, "merge");
     editor.nameAtEnd();
     for (std::size_t i = 0; i < maps_.size(); ++i) {
-      if (i == base) continue;
+      if (i == base_) continue;
       copyOperatorStatements(readers_[i].quads(), additions.transaction(), blankSuffixOf(i));
       copyHistory(readers_[i].quads(), additions.transaction());
     }
     leaveOutWithdrawn(additions);
     for (std::size_t i = 0; i < maps_.size(); ++i) {
-      if (i == base) continue;
+      if (i == base_) continue;
       const std::vector<ObjectMembers> other = storedMembers(readers_[i].transaction());
       editor.result().before.insert(editor.result().before.end(), other.begin(), other.end());
       addMap(i, additions);
@@ -238,7 +238,7 @@ class Merge {
 
   /// Keeps the blank nodes of the maps apart: names a map by its scans, in digits. Those of the largest map stay.
   std::string blankSuffixOf(std::size_t number) const {
-    if (number == largest()) return "";
+    if (number == base_) return "";
     ContentHasher hasher;
     for (const Cloud& cloud : readers_[number].clouds()) hasher.add(cloud.id);
     return "of" + std::to_string(number) + hasher.finish().hex().substr(0, 8);
@@ -292,6 +292,7 @@ class Merge {
   const MergeParams& params_;
   ProgressSink& sink_;
   std::vector<MapReader> readers_;
+  std::size_t base_ = 0;  ///< the map that is copied
 };
 
 }  // namespace

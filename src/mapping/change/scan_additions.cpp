@@ -6,7 +6,6 @@
 #include <iterator>
 #include <utility>
 
-#include "base/utc_time.hpp"
 #include "mapping/build/batch_size.hpp"
 #include "mapping/map_tables.hpp"
 #include "mapping/presence/object_rows.hpp"
@@ -20,7 +19,7 @@ void ScanAdditions::add(const scan::Scan& scan, std::size_t scans_left) {
   auto segments = storeScan(*transaction_, scan);
   if (segments.empty()) {
     ++editor_.result().scans_already_there;
-    noteOtherTime(scan, known->time_s, storedCloud(*transaction_, scan.id)->time_s);
+    countOtherTime(scan, known->time_s, storedCloud(*transaction_, scan.id)->time_s);
     return;
   }
   noteAdded(*storedCloud(*transaction_, scan.id));
@@ -32,15 +31,24 @@ void ScanAdditions::add(const scan::Scan& scan, std::size_t scans_left) {
   part_points_ = 0, part_scans_ = 0;
 }
 
-void ScanAdditions::noteOtherTime(const scan::Scan& scan, std::optional<double> before_s, std::optional<double> now_s) {
+void ScanAdditions::countOtherTime(const scan::Scan& scan, std::optional<double> before_s,
+                                   std::optional<double> now_s) {
   has_other_changes_ = has_other_changes_ || now_s != before_s;
-  if (scan.time_s == before_s) return;
-  const std::string what = "'" + scan.source + "' is there with another time: ";
   if (now_s != before_s)
-    editor_.sink().note(what + "the later one, " + dateTimeText(*now_s) + ", is taken");
-  else if (scan.time_s)
-    editor_.sink().note(what + "the later one, " + dateTimeText(*now_s) +
-                        ", stays; to correct it, retract the scan and add it again");
+    ++later_times_;
+  else if (scan.time_s && scan.time_s != before_s)
+    ++earlier_times_;
+}
+
+void ScanAdditions::noteOtherTimes() {
+  if (later_times_ > 0)
+    editor_.sink().note(std::to_string(later_times_) + " known scans have later times now, which are taken");
+  if (earlier_times_ > 0)
+    editor_.sink().note(
+        std::to_string(earlier_times_) +
+        " known scans are given earlier times; the later ones stay. To correct a time, retract the scan "
+        "and add it again");
+  later_times_ = earlier_times_ = 0;
 }
 
 void ScanAdditions::noteAdded(const Cloud& cloud) {
@@ -77,6 +85,7 @@ rdf::WriteTransaction& ScanAdditions::transaction() {
 }
 
 void ScanAdditions::finish() {
+  noteOtherTimes();
   if (!added_.empty() || has_other_changes_) editor_.commit(*transaction_, operation_, std::move(changes_), added_);
   editor_.result().scans_added += added_.size();
   transaction_.reset();

@@ -32,10 +32,6 @@ Term secondsLiteral(double seconds) {
   return Term::literal(text.data(), rdf::vocabulary::xsd("decimal"));
 }
 
-std::string prov(std::string_view local) {
-  return std::string(rdf::vocabulary::kProv).append(local);
-}
-
 /// The values of a property among the quads of one subject.
 std::vector<std::string> valuesOf(const std::vector<Quad>& about, const std::string& property) {
   std::vector<std::string> values;
@@ -59,9 +55,9 @@ std::string addActivity(rdf::WriteTransaction& transaction, const Activity& run,
   const auto time = [](double seconds) {
     return Term::literal(dateTimeText(seconds), rdf::vocabulary::xsd("dateTime"));
   };
-  add(activity, rdf::vocabulary::rdf("type"), Term::iri(prov("Activity")));
-  add(activity, prov("startedAtTime"), time(run.started_s));
-  add(activity, prov("endedAtTime"), time(run.ended_s));
+  add(activity, rdf::vocabulary::rdf("type"), Term::iri(provenance("Activity")));
+  add(activity, provenance("startedAtTime"), time(run.started_s));
+  add(activity, provenance("endedAtTime"), time(run.ended_s));
   add(activity, rdf::vocabulary::clx("operation"), Term::literal(run.operation));
   add(activity, rdf::vocabulary::clx("inputsHash"), Term::literal(inputs.hash().hex()));
   add(activity, rdf::vocabulary::clx("modelFile"), nameText(inputs.model.name));
@@ -73,7 +69,7 @@ std::string addActivity(rdf::WriteTransaction& transaction, const Activity& run,
   }
   for (const Cloud& cloud : clouds) {
     const Term subject = Term::iri(rdf::iriOfCloud(cloud.id));
-    add(activity, prov("used"), subject);
+    add(activity, provenance("used"), subject);
     add(subject, rdf::vocabulary::clx("sourceFile"), nameText(cloud.source));
   }
   writer.flush();
@@ -93,14 +89,14 @@ std::vector<RetractedScan> retractedScans(const rdf::ReadTransaction& transactio
   for (const std::string& activity : activitiesIn(quads)) {
     const std::vector<Quad> run = quadsAbout(quads, activity, rdf::vocabulary::kGraphHistory);
     if (valuesOf(run, rdf::vocabulary::clx("operation")) != std::vector<std::string>{"retract"}) continue;
-    for (const std::string& cloud : valuesOf(run, prov("used"))) {
+    for (const std::string& cloud : valuesOf(run, provenance("used"))) {
       const auto id = hashIn(cloud, "cloud");
       if (!id || storedCloud(transaction, *id)) continue;  // it was added again
       RetractedScan& scan = retracted[*id];
       scan.id = *id;
       scan.sources =
           valuesOf(quadsAbout(quads, cloud, rdf::vocabulary::kGraphHistory), rdf::vocabulary::clx("sourceFile"));
-      for (const std::string& time : valuesOf(run, prov("endedAtTime"))) scan.time = std::max(scan.time, time);
+      for (const std::string& time : valuesOf(run, provenance("endedAtTime"))) scan.time = std::max(scan.time, time);
     }
   }
   std::vector<RetractedScan> scans;
@@ -117,10 +113,10 @@ void addLineage(rdf::WriteTransaction& transaction, const std::string& activity_
   for (const auto* objects : {&changes.changed, &changes.split, &changes.joined})
     for (const DerivedObject& object : *objects) {
       for (const ContentHash& from : object.from)
-        add(object.id, prov("wasDerivedFrom"), Term::iri(rdf::iriOfObject(from)));
-      add(object.id, prov("wasGeneratedBy"), activity);
+        add(object.id, provenance("wasDerivedFrom"), Term::iri(rdf::iriOfObject(from)));
+      add(object.id, provenance("wasGeneratedBy"), activity);
     }
-  for (const ContentHash& gone : changes.gone) add(gone, prov("wasInvalidatedBy"), activity);
+  for (const ContentHash& gone : changes.gone) add(gone, provenance("wasInvalidatedBy"), activity);
   writer.flush();
 }
 

@@ -17,10 +17,6 @@ namespace {
 
 using rdf::vocabulary::clx;
 
-std::string statementTerm(std::string_view local) {
-  return std::string(rdf::vocabulary::kProv).append(local);
-}
-
 std::vector<Quad> quadsAboutStatement(const rdf::QuadReader& reader, const ContentHash& id, std::string_view graph) {
   return quadsAbout(reader, rdf::iriOfStatement(id), graph);
 }
@@ -39,7 +35,7 @@ class StatementWriter {
   bool wasWithdrawn(const ContentHash& id) const {
     const std::vector<Quad> known = quadsAboutStatement(reader_, id, rdf::vocabulary::kGraphHistory);
     return std::any_of(known.begin(), known.end(),
-                       [](const Quad& quad) { return quad.predicate.text == statementTerm("invalidatedAtTime"); });
+                       [](const Quad& quad) { return quad.predicate.text == provenance("invalidatedAtTime"); });
   }
   void add(const Quad& quad) { writer_.add(quad); }
   void remove(const ContentHash& id, std::string_view graph_iri) {
@@ -60,7 +56,7 @@ class StatementWriter {
   void record(const ContentHash& id, const std::string& by, const std::string& author, std::string_view time) {
     const Term subject = Term::iri(rdf::iriOfStatement(id)), graph = Term::iri(rdf::vocabulary::kGraphHistory);
     if (!author.empty()) writer_.add(Quad{subject, Term::iri(by), Term::literal(author), graph});
-    writer_.add(Quad{subject, Term::iri(statementTerm(time)), now_, graph});
+    writer_.add(Quad{subject, Term::iri(provenance(time)), now_, graph});
   }
 
   rdf::QuadReader reader_;
@@ -73,7 +69,7 @@ std::map<std::string, std::string> lastTimes(std::span<const rdf::QuadReader* co
   const std::string statements = rdf::mapIri("statement", "");
   std::map<std::string, std::string> last;
   for (const rdf::QuadReader* map : maps) {
-    const auto predicate = map->idOf(Term::iri(statementTerm(property)));
+    const auto predicate = map->idOf(Term::iri(provenance(property)));
     const auto history = map->idOf(Term::iri(rdf::vocabulary::kGraphHistory));
     if (!predicate || !history) continue;
     rdf::QuadCursor cursor = map->scan({.s = {}, .p = *predicate, .o = {}, .g = *history});
@@ -151,7 +147,7 @@ StatementRecord recordOf(const rdf::QuadReader& quads, const ContentHash& id) {
   std::set<std::string> authors;
   for (const Quad& quad : quadsAboutStatement(quads, id, rdf::vocabulary::kGraphHistory)) {
     if (quad.predicate.text == clx("statedBy")) authors.insert(quad.object.text);
-    if (quad.predicate.text == statementTerm("generatedAtTime"))
+    if (quad.predicate.text == provenance("generatedAtTime"))
       record.stated_at = std::max(record.stated_at, quad.object.text);
   }
   for (const std::string& author : authors) record.author += (record.author.empty() ? "" : ", ") + author;

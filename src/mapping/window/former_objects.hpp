@@ -27,7 +27,7 @@ class MemberLists {
   std::map<ContentHash, ObjectMembers> objects_;
 };
 
-/// All objects of a map as it is stored, read tile by tile. Memory: 8 bytes a cluxel. Cost: about 10 us a tile.
+/// All objects of a map as it is stored, read tile by tile. Memory: 8 bytes a cluxel.
 std::vector<ObjectMembers> storedMembers(const rdf::ReadTransaction& transaction);
 
 /// Collects members from the layers of tiles that are not written yet.
