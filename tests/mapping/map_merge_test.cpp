@@ -5,15 +5,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <map>
-#include <numeric>
-
 #include "base/file_bytes.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/build/map_update.hpp"
 #include "mapping/change/map_change.hpp"
-#include "mapping/map_tables.hpp"
 #include "mapping/small_campus.hpp"
 #include "sparql/query_engine.hpp"
 
@@ -73,95 +68,6 @@ TEST_F(MapMerge, OfTwoToFourMapsInAnyOrderIsTheBuildFromAllScans) {
     EXPECT_EQ(report.scans, 4U);
     EXPECT_TRUE(canonicalText(target()) == *whole) << maps.front().file;
     EXPECT_FALSE(fs::exists(target().string() + ".merging"));
-  }
-}
-
-/// The blocks of all tables about tiles and objects.
-std::map<std::string, std::string> blocksOf(const fs::path& file) {
-  std::map<std::string, std::string> blocks;
-  const auto environment = rdf::Environment::open(file, rdf::OpenMode::ReadOnly);
-  const rdf::ReadTransaction transaction = environment->read();
-  for (const std::string_view table :
-       {tables::kPoints, tables::kCluxels, tables::kGround, tables::kFeatures, tables::kLabels, tables::kSummaries,
-        tables::kEven, tables::kComponents, tables::kContacts, tables::kSurfaces, tables::kWays, tables::kTileLayers,
-        tables::kObjects, tables::kWideTiles, tables::kPresence, tables::kPassedRays})
-    transaction.forEachBlock(table, "", [&](std::string_view key, std::string_view bytes) {
-      blocks[std::string(table) + "/" + std::string(key)] = std::string(bytes);
-    });
-  return blocks;
-}
-
-/// How many tiles a stage computed.
-class ComputedTiles : public ProgressSink {
- public:
-  void progress(std::string_view stage, std::size_t done, std::size_t total) override {
-    if (done == total) tiles[std::string(stage)] += total;
-  }
-  std::map<std::string, std::size_t> tiles;
-};
-
-/// Scans along a street, from west to east.
-class Street {
- public:
-  Street()
-      : campus_({.seed = 8, .stops = 12, .size_m = 300, .points_per_stop = 7000, .max_range_m = 16}),
-        all_(scansOf(campus_.files())),
-        from_west_(all_.size()) {
-    std::iota(from_west_.begin(), from_west_.end(), 0);
-    std::sort(from_west_.begin(), from_west_.end(), [&](std::size_t a, std::size_t b) {
-      return all_.file(a).T_map_sensor.translation().x() < all_.file(b).T_map_sensor.translation().x();
-    });
-  }
-  std::size_t size() const { return from_west_.size(); }
-  ScanSet scans(std::size_t first, std::size_t end) const {
-    std::vector<PosedScan> chosen;
-    for (std::size_t i = first; i < end; ++i) chosen.push_back({from_west_[i], all_.file(from_west_[i]).T_map_sensor});
-    return all_.posed(chosen);
-  }
-  fs::path built(std::size_t first, std::size_t end, const std::string& name,
-                 const MapInputs& inputs = shippedInputs()) const {
-    fs::remove(folder_.path() / name);
-    buildMap(scans(first, end), inputs, folder_.path() / name, {}, silence());
-    return folder_.path() / name;
-  }
-  fs::path merged() const { return folder_.path() / "merged"; }
-
- private:
-  SmallCampus campus_;
-  ScanSet all_;
-  std::vector<std::size_t> from_west_;
-  ScratchFolder folder_;
-};
-
-std::size_t tilesOf(const fs::path& map) {
-  return storedTiles(MapReader(map).transaction()).size();
-}
-
-TEST(MergeOfStreets, TakesTilesThatOnlyOneMapHas) {
-  const Street street;
-  const fs::path whole = street.built(0, street.size(), "whole");
-  MergeParams params;
-  params.force = true;
-  // The last pair shares a scan.
-  for (const auto& [end, first] : {std::pair<std::size_t, std::size_t>{6, 6}, {4, 4}, {9, 9}, {7, 6}}) {
-    const fs::path west = street.built(0, end, "west"), east = street.built(first, street.size(), "east");
-    ComputedTiles computed;
-    mergeMaps({{west}, {east}}, street.merged(), params, computed);
-    EXPECT_TRUE(canonicalText(street.merged()) == canonicalText(whole)) << end;
-    EXPECT_TRUE(blocksOf(street.merged()) == blocksOf(whole)) << end;
-    EXPECT_LT(3 * computed.tiles["cluxels"], 2 * tilesOf(street.merged())) << end;
-  }
-}
-
-TEST(ExtensionOfStreets, ReadsAsFarAsLabelsDo) {
-  const Street street;
-  for (const double halo_m : {0.0, 3.0, 14.0, 16.0}) {
-    MapInputs inputs = shippedInputs();
-    inputs.params.labelling.halo_m = halo_m;
-    const fs::path whole = street.built(0, street.size(), "whole", inputs);
-    const fs::path extended = street.built(0, street.size() - 1, "extended", inputs);
-    extendMap(extended, street.scans(street.size() - 1, street.size()), {}, silence());
-    EXPECT_TRUE(blocksOf(extended) == blocksOf(whole)) << halo_m;
   }
 }
 

@@ -23,6 +23,7 @@ struct PointChanges {
   /// Another map with the same model and settings. All its scans were copied to this map, and its tiles come with them.
   /// Tiles that both maps have are in `anew`.
   const rdf::ReadTransaction* copied = nullptr;
+  bool is_lender = false;  ///< what it decided may be taken, too: it has the same inputs (canLendDecisions())
 
   TileSet tiles() const;
   void add(std::map<perception::TileKey, perception::ScanSegment> segments);

@@ -220,6 +220,8 @@ TileSet TileStages::run(rdf::WriteTransaction& transaction, PointChanges changes
     donor.emplace(*changes.copied);
     changes_.has_copied_map = true;
   }
+  if (donor || !changes.added.empty() || !changes.anew.empty())
+    changes_.lender = changes.is_lender && changes_.tiles.empty() ? changes.copied : nullptr;
   // The scans are stored already: all points of these tiles are read, also those that were added.
   for (auto& [tile, segments] : storedSegments(transaction, changes.anew))
     changes.added.insert_or_assign(tile, std::move(segments));
@@ -238,6 +240,10 @@ TileSet TileStages::run(rdf::WriteTransaction& transaction, PointChanges changes
 
 bool TileStages::updateWays(rdf::WriteTransaction& transaction, unsigned threads) {
   return !updateWayTiles(transaction, std::exchange(changed_even_, {}), std::exchange(even_, {}), threads).empty();
+}
+
+void TileStages::noteEven(const TileSet& kept, const TileSet& changed) {
+  changed_even_ = unionOf(without(std::move(changed_even_), kept), changed);
 }
 
 void TileStages::load(const rdf::ReadTransaction& transaction) {
@@ -283,6 +289,17 @@ perception::Scene TileStages::takeScene(const std::vector<Cloud>& clouds) {
 void TileStages::dropPoints() {
   outputs_.points.clear();
   outputs_.cluxels.clear();
+}
+
+bool haveSameOutput(const rdf::ReadTransaction& a, const rdf::ReadTransaction& b, Stage stage, const TileKey& tile) {
+  const std::string key = tables::keyOf(tile);
+  return a.block(tableOf(stage), key) == b.block(tableOf(stage), key);
+}
+
+bool haveSameOutputs(const rdf::ReadTransaction& a, const rdf::ReadTransaction& b, const TileKey& tile) {
+  for (std::size_t stage = 0; stage < perception::kStageCount; ++stage)
+    if (!haveSameOutput(a, b, static_cast<Stage>(stage), tile)) return false;
+  return true;
 }
 
 }  // namespace cluxel::mapping

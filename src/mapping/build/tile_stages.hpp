@@ -27,6 +27,8 @@ struct OutputChanges {
   /// The summaries that these tiles had before, as stored; absent where there were none.
   std::map<perception::TileKey, std::optional<std::string>> former_summaries;
   bool has_copied_map = false;  ///< tiles and rows of objects of another map were copied
+  /// The only map that was copied, if it lends what it decided and nothing else changed; else null.
+  const rdf::ReadTransaction* lender = nullptr;
 };
 
 /// `model` and `params` must outlive it.
@@ -46,6 +48,8 @@ class TileStages {
   /// Brings the two stages of ways up to date after update() or computeAnew(). Returns whether what some tile
   /// contributes to ways changed since ways were read last. The scene may be taken meanwhile.
   bool updateWays(rdf::WriteTransaction& transaction, unsigned threads);
+  /// The stages of ways count the even ground of `changed` as changed, and no longer that of `kept`.
+  void noteEven(const perception::TileSet& kept, const perception::TileSet& changed);
   /// All changes since the last call of this function.
   OutputChanges takeChanges() { return std::exchange(changes_, {}); }
   /// Reads what the scene is assembled from, of all tiles. Cost: about 100 ns a cluxel.
@@ -102,5 +106,10 @@ class TileStages {
   perception::TileSet changed_even_;
   std::map<perception::TileKey, perception::EvenTile> even_;  ///< of those that are at hand
 };
+
+/// Whether two maps store the same output of a stage, or of all stages but ways, for a tile that both have.
+bool haveSameOutput(const rdf::ReadTransaction& a, const rdf::ReadTransaction& b, perception::Stage stage,
+                    const perception::TileKey& tile);
+bool haveSameOutputs(const rdf::ReadTransaction& a, const rdf::ReadTransaction& b, const perception::TileKey& tile);
 
 }  // namespace cluxel::mapping

@@ -17,6 +17,7 @@
 #include "mapping/map_state.hpp"
 #include "mapping/statements/statement_history.hpp"
 #include "mapping/window/former_objects.hpp"
+#include "mapping/window/lent_decisions.hpp"
 #include "rdf/file/map_replacement.hpp"
 #include "rdf/map_iris.hpp"
 
@@ -251,15 +252,20 @@ class Merge {
     return inputs;
   }
 
-  /// Copies the scans and tiles of a map that has the frame, model and settings of the result and fits into one batch.
-  /// Of another map the scans are added one by one.
+  /// Copies the scans and tiles of a map that has the frame, model and settings of the result, and takes what it
+  /// decided where it can. A map that only lends its tiles has to fit into one batch. Of others the scans are added one
+  /// by one.
   void addMap(std::size_t number, ScanAdditions& additions) {
     const MapInputs own = inputsOfResult(), inputs = readers_[number].inputs();
     const bool is_alike = maps_[number].T_first_map.matrix().isIdentity(0) && own.model.text == inputs.model.text &&
                           perception::hashOf(own.params) == perception::hashOf(inputs.params);
-    if (!is_alike || readers_[number].summary().points > params_.change.batch_points)
+    const bool is_lender =
+        is_alike && !additions.hasOpenBatch() && own.map_origin == inputs.map_origin && own.crs == inputs.crs &&
+        differencesOf(own, inputs).empty() &&
+        canLendDecisions(additions.transaction(), readers_[number].transaction(), params_.change.max_window_share);
+    if (!is_lender && (!is_alike || readers_[number].summary().points > params_.change.batch_points))
       return addScans(number, additions);
-    additions.copy(readers_[number].transaction());
+    additions.copy(readers_[number].transaction(), is_lender);
   }
 
   void addScans(std::size_t number, ScanAdditions& additions) {

@@ -56,7 +56,7 @@ void ScanAdditions::noteAdded(const Cloud& cloud) {
   points_ += cloud.point_count, part_points_ += cloud.point_count, ++part_scans_;
 }
 
-void ScanAdditions::copy(const rdf::ReadTransaction& other) {
+void ScanAdditions::copy(const rdf::ReadTransaction& other, bool is_lender) {
   transaction();
   if (!changes_.added.empty()) editor_.update(*transaction_, std::exchange(changes_, {}), editor_.sink());
   for (const Cloud& cloud : storedClouds(other)) {
@@ -65,17 +65,18 @@ void ScanAdditions::copy(const rdf::ReadTransaction& other) {
     else
       ++editor_.result().scans_already_there;
   }
+  // What objects of the other map follow from is told with them: it is taken where that is the same.
+  for (const std::string_view table : {tables::kPresence, tables::kPassedRays}) copyRows(*transaction_, table, other);
+  copySplits(*transaction_, other);
   PointChanges changes;
   changes.copied = &other;
+  changes.is_lender = is_lender;
   const TileSet own = storedTiles(*transaction_), tiles = storedTiles(other);
   std::set_intersection(own.begin(), own.end(), tiles.begin(), tiles.end(),
                         std::inserter(changes.anew, changes.anew.end()));
   editor_.update(*transaction_, std::move(changes), editor_.sink());
-  // What objects of the other map follow from is told with them: it is taken where that is the same.
-  for (const std::string_view table : {tables::kPresence, tables::kPassedRays}) copyRows(*transaction_, table, other);
-  copySplits(*transaction_, other);
   part_points_ = 0, part_scans_ = 0;
-  if (!editor_.params().dry_run && points_ >= editor_.params().batch_points) finish();
+  if (is_lender || (!editor_.params().dry_run && points_ >= editor_.params().batch_points)) finish();
 }
 
 rdf::WriteTransaction& ScanAdditions::transaction() {

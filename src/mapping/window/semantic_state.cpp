@@ -90,6 +90,11 @@ std::vector<SeenCloud> seenClouds(const std::vector<Cloud>& clouds) {
   return seen;
 }
 
+bool tellsPresence(const std::vector<SeenCloud>& clouds) {
+  return std::count_if(clouds.begin(), clouds.end(),
+                       [](const SeenCloud& cloud) { return cloud.time_s && cloud.has_pose; }) >= 2;
+}
+
 std::vector<Eigen::AlignedBox3d> changedRays(const std::vector<SeenCloud>& before, const std::vector<SeenCloud>& now) {
   const auto missingIn = [](const std::vector<SeenCloud>& from, const std::vector<SeenCloud>& in, auto& boxes) {
     std::map<ContentHash, ContentHash> contents;

@@ -32,6 +32,8 @@ void storeSemanticState(rdf::WriteTransaction& transaction, const SemanticState&
 std::optional<SemanticState> storedSemanticState(const rdf::ReadTransaction& transaction);
 
 std::vector<SeenCloud> seenClouds(const std::vector<Cloud>& clouds);
+/// Whether facts about presence are told of objects: when two clouds or more have a time and a pose.
+bool tellsPresence(const std::vector<SeenCloud>& clouds);
 /// The bounds of the rays of clouds that came, went or changed: those of before and those of now.
 std::vector<Eigen::AlignedBox3d> changedRays(const std::vector<SeenCloud>& before, const std::vector<SeenCloud>& now);
 

@@ -16,6 +16,7 @@
 #include "mapping/statements/statement_facts.hpp"
 #include "mapping/window/former_objects.hpp"
 #include "mapping/window/kept_objects.hpp"
+#include "mapping/window/lent_decisions.hpp"
 #include "mapping/window/likely_tiles.hpp"
 #include "mapping/window/map_window.hpp"
 #include "mapping/window/semantic_state.hpp"
@@ -78,7 +79,7 @@ class LocalUpdate {
  public:
   LocalUpdate(rdf::WriteTransaction& transaction, const ParsedInputs& parsed, TileStages& stages,
               OutputChanges& changes, ChangedInputs inputs, const UpdateParams& params, ProgressSink& sink,
-              const rdf::InferenceCheck& check)
+              const rdf::InferenceCheck& check, LentDecisions* lent)
       : transaction_(transaction),
         parsed_(parsed),
         stages_(stages),
@@ -87,6 +88,7 @@ class LocalUpdate {
         params_(params),
         sink_(sink),
         check_(check),
+        lent_(lent),
         former_summaries_(changes) {}
 
   /// Absent when the whole map has to be computed; then nothing was written.
@@ -96,9 +98,9 @@ class LocalUpdate {
     if (!reach_m || *reach_m > perception::kTileSize_m || !before) return std::nullopt;
     reach_m_ = *reach_m;
     clouds_ = storedClouds(transaction_);
-    before_ = *std::move(before);
+    before_ = lent_ != nullptr ? lent_->state() : *std::move(before);
     now_ = {0, 0, 0, statementIds(transaction_), seenClouds(clouds_)};
-    if (isTold(before_.clouds) != isTold(now_.clouds) || hasOtherTimes()) return std::nullopt;
+    if (tellsPresence(before_.clouds) != tellsPresence(now_.clouds) || hasOtherTimes()) return std::nullopt;
     if (inputs_ == ChangedInputs::Rules) {
       const std::optional<RuleChange> other = changeOfRules(transaction_, parsed_.rules);
       if (!other || other->former_reach_m > perception::kTileSize_m) return std::nullopt;
@@ -107,7 +109,8 @@ class LocalUpdate {
       changes_.tiles.insert(other->tiles.begin(), other->tiles.end());
       if (changes_.tiles.empty()) return unchanged();
     }
-    more_ = tilesOfPassedObjects(transaction_, changedRays(before_.clouds, now_.clouds));
+    more_ = lent_ != nullptr ? lent_->passed()
+                             : tilesOfPassedObjects(transaction_, changedRays(before_.clouds, now_.clouds));
     WindowStatements statements(transaction_, parsed_, stages_, clouds_, changes_, before_, now_);
     for (; attempt_ < kMaxAttempts && depth_ < depths_.size() && !statements.needsWholeMap(); ++attempt_) {
       if (check_) check_(0);
@@ -131,7 +134,8 @@ class LocalUpdate {
       if (is_new) known->second = inputs.hashOf(primitive);
       return known->second;
     };
-    const TileSet anew = perception::unionOf(statements.tiles(), decided_otherwise_);
+    TileSet anew = perception::unionOf(statements.tiles(), decided_otherwise_);
+    if (lent_ != nullptr) anew.insert(lent_->seam().begin(), lent_->seam().end());
     const WindowChange change = changeIn(window, changes_, anew, reach_m_, input_of);
     const rules::LocalInput input = localInputOf(window, change, lone_objects_, reach_m_);
     if (isTooSmall(window, change, input.likely.layers)) return std::nullopt;
@@ -152,7 +156,8 @@ class LocalUpdate {
     if (!statements.apply(window, change, *decision)) return std::nullopt;
     const std::vector<std::uint32_t> former = formerNumbers(window, stages_, former_summaries_);
     const std::vector<rules::SemanticObject> wide = wideObjectsIn(transaction_, window, *decision, former);
-    needs_whole_map_ = changesWideObjects(window, *decision, wide);
+    needs_whole_map_ =
+        changesWideObjects(window, *decision, wide) || (lent_ != nullptr && !lent_->isCoveredBy(*decision, wide));
     if (needs_whole_map_) return std::nullopt;
     SemanticUpdate update = write({window, change, *decision, former, wide, input_of}, statements);
     updateMargins(transaction_, margins.found(), window.tiles, tilesDecidedWhole(window, *decision));
@@ -193,12 +198,6 @@ class LocalUpdate {
            params_.max_window_share * static_cast<double>(storedTiles(transaction_).size());
   }
 
-  /// Facts about presence are told of objects when two clouds or more have a time and a pose.
-  static bool isTold(const std::vector<SeenCloud>& clouds) {
-    return std::count_if(clouds.begin(), clouds.end(),
-                         [](const SeenCloud& cloud) { return cloud.time_s && cloud.has_pose; }) >= 2;
-  }
-
   /// Whether a cloud that stays has another time. Observations anywhere tell it.
   bool hasOtherTimes() const {
     std::map<ContentHash, std::optional<double>> times;
@@ -237,10 +236,11 @@ class LocalUpdate {
     keepDifferent(update.before, update.after);
     count(window, change, update);
     sink_.progress("objects", update.after.size(), update.after.size());
-    const bool have_ways = stages_.updateWays(transaction_, params_.threads);
+    const bool have_ways = stages_.updateWays(transaction_, params_.threads) || lent_ != nullptr;
+    if (lent_ != nullptr) lent_->addFacts();
     const std::optional<WayGraph> ways = have_ways ? std::optional(storedWays(transaction_)) : std::nullopt;
     writeWindowFacts(transaction_, {parsed_, stages_, clouds_, before_.clouds, decided, statements,
-                                    ways ? &*ways : nullptr, params_.threads});
+                                    ways ? &*ways : nullptr, lent_, params_.threads});
     writeLayers(transaction_, decided, changes_);
     statements.store(transaction_, window);
     if (!now_.statements.empty())
@@ -283,6 +283,7 @@ class LocalUpdate {
   UpdateParams params_;
   ProgressSink& sink_;
   const rdf::InferenceCheck& check_;
+  LentDecisions* lent_;        ///< null when no other map lends any
   TileSet decided_otherwise_;  ///< tiles in which thresholds of the rules moved beyond what was measured
   double reach_m_ = 0;
   std::set<ContentHash> lone_objects_;
@@ -328,13 +329,21 @@ SemanticUpdate updateSemanticLayer(rdf::WriteTransaction& transaction, const Par
                                    ChangedInputs inputs, const UpdateParams& params, ProgressSink& sink,
                                    const rdf::InferenceCheck& check) {
   OutputChanges changes = stages.takeChanges();
+  std::optional<LentDecisions> lent;
+  if (inputs == ChangedInputs::Scans && changes.lender != nullptr) {
+    lent.emplace(transaction, *changes.lender);
+    lent->lend(changes, stages);
+  }
   if (inputs != ChangedInputs::Any)
-    if (auto update = LocalUpdate(transaction, parsed, stages, changes, inputs, params, sink, check).run()) {
+    if (auto update =
+            LocalUpdate(transaction, parsed, stages, changes, inputs, params, sink, check, lent ? &*lent : nullptr)
+                .run()) {
       if (changes.has_copied_map)
         for (const std::string_view table : {tables::kPresence, tables::kPassedRays})
           eraseRowsWithoutObject(transaction, table);
       return *std::move(update);
     }
+  if (lent) lent->takeBack();
   return updateAll(transaction, parsed, stages, changes, params, sink, check);
 }
 

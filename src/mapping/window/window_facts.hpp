@@ -7,6 +7,7 @@
 #include "cluxel/progress.hpp"
 #include "mapping/cloud.hpp"
 #include "mapping/facts/semantic_layer.hpp"
+#include "mapping/window/lent_decisions.hpp"
 #include "mapping/window/map_window.hpp"
 #include "mapping/window/semantic_state.hpp"
 #include "mapping/window/window_change.hpp"
@@ -23,7 +24,8 @@ struct WindowFacts {
   const std::vector<SeenCloud>& clouds_before;
   const DecidedWindow& decided;
   const WindowStatements& statements;
-  const WayGraph* ways = nullptr;  ///< null when they are as before
+  const WayGraph* ways = nullptr;       ///< null when they are as before
+  const LentDecisions* lent = nullptr;  ///< of another map, if some were
   unsigned threads = 1;
 };
 

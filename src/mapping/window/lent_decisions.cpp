@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: Apache-2.0
+// Everything that reaches from the tiles of one map into those of the other meets the seam.
+#include "mapping/window/lent_decisions.hpp"
+
+#include <algorithm>
+
+#include "mapping/build/scan_store.hpp"
+#include "mapping/layers/stored_layers.hpp"
+#include "mapping/map_tables.hpp"
+#include "mapping/statements/statement_facts.hpp"
+#include "mapping/window/window_presence.hpp"
+#include "rdf/vocabulary.hpp"
+
+namespace cluxel::mapping {
+
+namespace {
+
+using perception::TileKey;
+
+/// Rings around the tiles of both maps that are decided anew at least. The number was chosen, not measured.
+constexpr int kRingsDecided = 2;
+
+bool hasStatements(const rdf::ReadTransaction& map) {
+  return !storedStatements(rdf::QuadReader(map)).empty();
+}
+
+bool hasWideObjectsButGround(const rdf::ReadTransaction& map) {
+  bool has = false;
+  forEachRecord(map, [&](const ContentHash&, const ObjectRecord& record) {
+    has = has || (record.is_class_wide && record.class_iri != rdf::vocabulary::clx("Ground"));
+  });
+  return has;
+}
+
+/// All clouds, ascending by id. Absent when a cloud of both is not the same in both.
+std::optional<std::vector<SeenCloud>> unionOfClouds(const std::vector<SeenCloud>& a, const std::vector<SeenCloud>& b) {
+  std::map<ContentHash, SeenCloud> clouds;
+  for (const SeenCloud& cloud : a) clouds.emplace(cloud.id, cloud);
+  for (const SeenCloud& cloud : b) {
+    const auto [known, is_new] = clouds.emplace(cloud.id, cloud);
+    if (!is_new && (known->second.content != cloud.content || known->second.time_s != cloud.time_s))
+      return std::nullopt;
+  }
+  std::vector<SeenCloud> all;
+  for (auto& [id, cloud] : clouds) all.push_back(std::move(cloud));
+  return all;
+}
+
+/// The bounds of the rays of clouds that only `a` has.
+std::vector<Eigen::AlignedBox3d> raysOfOthers(const std::vector<SeenCloud>& a, const std::vector<SeenCloud>& b) {
+  std::vector<SeenCloud> common;
+  std::set<ContentHash> of_b;
+  for (const SeenCloud& cloud : b) of_b.insert(cloud.id);
+  std::copy_if(a.begin(), a.end(), std::back_inserter(common),
+               [&](const SeenCloud& cloud) { return of_b.contains(cloud.id); });
+  return changedRays(common, a);
+}
+
+/// Whether less than `max_share` of the tiles is likely to be decided anew.
+bool leavesMostAlone(const TileSet& own, const TileSet& of_lender, double max_share) {
+  TileSet decided;
+  std::set_intersection(own.begin(), own.end(), of_lender.begin(), of_lender.end(),
+                        std::inserter(decided, decided.end()));
+  if (decided.empty()) decided = perception::withRing(perception::grown(own), of_lender);
+  const TileSet all = perception::unionOf(own, of_lender);
+  for (int ring = 0; ring < kRingsDecided; ++ring) decided = perception::withRing(decided, all);
+  return static_cast<double>(decided.size()) <= max_share * static_cast<double>(all.size());
+}
+
+void copyBlock(rdf::WriteTransaction& into, const rdf::ReadTransaction& from, std::string_view table,
+               const TileKey& tile) {
+  const std::string key = tables::keyOf(tile);
+  if (const auto block = from.block(table, key)) into.putBlock(table, key, *block);
+}
+
+}  // namespace
+
+bool canLendDecisions(const rdf::ReadTransaction& map, const rdf::ReadTransaction& lender, double max_share) {
+  const std::optional<SemanticState> own = storedSemanticState(map), other = storedSemanticState(lender);
+  if (!own || !other || !leavesMostAlone(storedTiles(map), storedTiles(lender), max_share)) return false;
+  const auto clouds = unionOfClouds(own->clouds, other->clouds);
+  if (!clouds || tellsPresence(own->clouds) != tellsPresence(*clouds) ||
+      tellsPresence(other->clouds) != tellsPresence(*clouds))
+    return false;
+  return !hasStatements(map) && !hasStatements(lender) && !hasWideObjectsButGround(map) &&
+         !hasWideObjectsButGround(lender);
+}
+
+LentDecisions::LentDecisions(rdf::WriteTransaction& transaction, const rdf::ReadTransaction& lender)
+    : transaction_(transaction), lender_(lender) {
+  for (const TileKey& tile : storedTiles(transaction))
+    if (transaction.block(tables::kTileLayers, tables::keyOf(tile))) own_.insert(tile);
+  const TileSet of_lender = storedTiles(lender);
+  for (const TileKey& tile : of_lender) (own_.contains(tile) ? common_ : lent_).insert(tile);
+  seam_ = perception::unionOf(perception::withRing(own_, lent_), common_);
+  state_ = storedSemanticState(transaction).value();
+  const SemanticState other = storedSemanticState(lender).value();
+  passed_ = perception::unionOf(tilesOfPassedObjects(transaction, raysOfOthers(other.clouds, state_.clouds)),
+                                tilesOfPassedObjects(lender, raysOfOthers(state_.clouds, other.clouds)));
+  state_.clouds = unionOfClouds(state_.clouds, other.clouds).value();
+  state_.cluxels += other.cluxels, state_.primitives += other.primitives;
+}
+
+void LentDecisions::lend(OutputChanges& changes, TileStages& stages) {
+  readCommonTiles();
+  lendRows();
+  lendRecords();
+  noteChanges(changes, stages);
+  facts_.emplace(lender_, not_lent_);
+}
+
+/// What the lender decided about tiles of both maps is not taken.
+void LentDecisions::readCommonTiles() {
+  for (const TileKey& tile : common_) {
+    const TileLayer layer = storedLayer(lender_, tile).value();
+    state_.cluxels -= layer.size();
+    for (const TileLayer::PrimitiveHere& primitive : layer.primitives) not_lent_.primitives.insert(primitive.id);
+    for (const TileLayer::Share& share : layer.shares) not_lent_.objects.insert(share.object);
+  }
+  std::set<ContentHash> ends_here = not_lent_.primitives;
+  for (const TileKey& tile : perception::withRing(common_, lent_)) {
+    const TileLayer layer = storedLayer(lender_, tile).value();
+    for (const TileLayer::PrimitiveHere& primitive : layer.primitives) ends_here.erase(primitive.id);
+  }
+  state_.primitives -= ends_here.size();
+}
+
+void LentDecisions::lendRows() {
+  for (const TileKey& tile : lent_)
+    for (const std::string_view table :
+         {tables::kTileLayers, tables::kMargins, tables::kWideTiles, tables::kSurfaces, tables::kWays})
+      copyBlock(transaction_, lender_, table, tile);
+}
+
+void LentDecisions::lendRecords() {
+  forEachRecord(lender_, [this](const ContentHash& id, const ObjectRecord& record) { lendRecord(id, record); });
+  for (const ContentHash& wide : not_lent_.wide) not_lent_.objects.erase(wide);
+  state_.objects += added_.size();
+}
+
+void LentDecisions::lendRecord(const ContentHash& id, const ObjectRecord& record) {
+  const auto is_lent = [this](const TileKey& tile) { return lent_.contains(tile); };
+  if (record.is_class_wide) not_lent_.wide.insert(id);
+  if (std::none_of(record.tiles.begin(), record.tiles.end(), is_lent)) return;
+  ObjectRecord now = record;
+  if (record.is_class_wide) {
+    std::erase_if(now.tiles, [&](const TileKey& tile) { return !is_lent(tile); });
+    if (const auto own = storedRecord(transaction_, id)) {
+      widened_.emplace(id, toBytes(*own));
+      now.tiles.insert(now.tiles.end(), own->tiles.begin(), own->tiles.end());
+      std::sort(now.tiles.begin(), now.tiles.end());
+    }
+  } else if (!std::all_of(record.tiles.begin(), record.tiles.end(), is_lent)) {
+    reaching_.insert(id);
+  }
+  if (!widened_.contains(id)) added_.insert(id);
+  transaction_.putBlock(tables::kObjects, tables::keyOf(id), toBytes(now));
+}
+
+void LentDecisions::noteChanges(OutputChanges& changes, TileStages& stages) const {
+  TileSet same_even;
+  for (const TileKey& tile : lent_) {
+    if (haveSameOutput(transaction_, lender_, perception::Stage::Even, tile)) same_even.insert(tile);
+    const std::string key = tables::keyOf(tile);
+    const auto former = lender_.block(tables::kSummaries, key);
+    if (former == transaction_.block(tables::kSummaries, key))
+      changes.former_summaries.erase(tile);
+    else
+      changes.former_summaries.insert_or_assign(tile, std::string(former.value()));
+    if (haveSameOutputs(transaction_, lender_, tile)) changes.tiles.erase(tile);
+  }
+  changes.tiles.insert(seam_.begin(), seam_.end());
+  stages.noteEven(same_even, seam_);
+}
+
+void LentDecisions::takeBack() {
+  for (const TileKey& tile : lent_)
+    for (const std::string_view table : {tables::kTileLayers, tables::kMargins, tables::kWideTiles})
+      transaction_.eraseBlock(table, tables::keyOf(tile));
+  for (const ContentHash& id : added_) transaction_.eraseBlock(tables::kObjects, tables::keyOf(id));
+  for (const auto& [id, record] : widened_) transaction_.putBlock(tables::kObjects, tables::keyOf(id), record);
+}
+
+bool LentDecisions::isCoveredBy(const WindowDecision& decision, const std::vector<rules::SemanticObject>& wide) const {
+  const auto is_told = [&](const ContentHash& id) {
+    return std::any_of(wide.begin(), wide.end(), [&](const rules::SemanticObject& object) { return object.id == id; });
+  };
+  return std::all_of(reaching_.begin(), reaching_.end(),
+                     [&](const ContentHash& id) { return decision.replaced.contains(id); }) &&
+         std::all_of(not_lent_.wide.begin(), not_lent_.wide.end(), is_told);
+}
+
+}  // namespace cluxel::mapping
