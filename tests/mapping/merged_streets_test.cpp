@@ -52,11 +52,7 @@ enum class Times { Known, Unknown };
 class Street {
  public:
   explicit Street(std::uint32_t seed = 8, Times times = Times::Known, double stops = 12)
-      : campus_({.seed = seed,
-                 .stops = stops,
-                 .size_m = 25.0 * stops,
-                 .points_per_stop = 7000,
-                 .max_range_m = 16}) {
+      : campus_({.seed = seed, .stops = stops, .size_m = 25.0 * stops, .points_per_stop = 7000, .max_range_m = 16}) {
     const ScanSet all = scansOf(campus_.files());
     std::vector<std::size_t> order(all.size());
     std::iota(order.begin(), order.end(), 0);
