@@ -10,7 +10,9 @@
 #include <vector>
 
 #include "rdf/file/commit_stamps.hpp"
+#include "rdf/file/layer_sizes.hpp"
 #include "rdf/file/lmdb_environment.hpp"
+#include "rdf/file/lock_file.hpp"
 #include "rdf/file/map_check.hpp"
 #include "rdf/map_file_fixture.hpp"
 #include "rdf/store/quad_store.hpp"
@@ -195,23 +197,25 @@ TEST_F(MapFile, CopiesTheStampsOfTheLastCommitOnly) {
   const std::array kOld = {"old 1", "old 2", "old 3", "old 4"};
   for (const std::string_view name : kOld) commit({name});
   commit({"last", "too"});
-  const fs::path target = folder_.path() / "copy.clx";
-  environment->compactTo(target);
-  EXPECT_TRUE(checkMap(target).sound());
-  const auto copy = Environment::open(target, OpenMode::ReadWrite);
-  const auto stamps = [&] {
-    const ReadTransaction transaction = copy->read();
-    std::vector<std::string_view> found;
-    for (const std::string_view name : {"old 1", "old 2", "old 3", "old 4", "last", "too", "unknown"})
-      if (hasStamp(transaction, name)) found.push_back(name);
-    return found;
-  };
-  EXPECT_THAT(stamps(), ElementsAre("last", "too"));
-  for (int i = 0; i < 5; ++i) {
-    WriteTransaction transaction = copy->write();
-    transaction.putBlock("t", "b", std::to_string(i));
-    transaction.commit();
-    EXPECT_THAT(stamps(), IsEmpty()) << "nobody stamped commit " << copy->read().commitNumber();
+  for (const CopiedPages pages : {CopiedPages::Filled, CopiedPages::AsTheyAre}) {
+    const fs::path target = folder_.path() / (pages == CopiedPages::Filled ? "filled.clx" : "copy.clx");
+    environment->compactTo(target, pages);
+    EXPECT_TRUE(checkMap(target).sound());
+    const auto copy = Environment::open(target, OpenMode::ReadWrite);
+    const auto stamps = [&] {
+      const ReadTransaction transaction = copy->read();
+      std::vector<std::string_view> found;
+      for (const std::string_view name : {"old 1", "old 2", "old 3", "old 4", "last", "too", "unknown"})
+        if (hasStamp(transaction, name)) found.push_back(name);
+      return found;
+    };
+    EXPECT_THAT(stamps(), ElementsAre("last", "too"));
+    for (int i = 0; i < 5; ++i) {
+      WriteTransaction transaction = copy->write();
+      transaction.putBlock("t", "b", std::to_string(i));
+      transaction.commit();
+      EXPECT_THAT(stamps(), IsEmpty()) << "nobody stamped commit " << copy->read().commitNumber();
+    }
   }
 }
 
@@ -228,23 +232,37 @@ TEST_F(MapFile, CompactsIntoASmallerMapWithTheSameContents) {
     transaction.putBlock("t", "a", std::string(100'000, static_cast<char>('a' + i)));
     transaction.commit();
   }
-  const fs::path target = folder_.path() / "small.clx";
-  environment->compactTo(target);
-  EXPECT_LT(fs::file_size(target), fs::file_size(file_));
-  EXPECT_THROW(environment->compactTo(target), Error) << "an existing file is not overwritten";
-  const auto copy = Environment::open(target, OpenMode::ReadOnly);
-  const ReadTransaction before = environment->read();
-  const ReadTransaction after = copy->read();
-  EXPECT_EQ(after.block("t", "a"), before.block("t", "a"));
-  const QuadReader old_reader(before);
-  const QuadReader new_reader(after);
-  ASSERT_EQ(new_reader.size(), old_reader.size());
-  for (TermId id = 1; id <= old_reader.termCount(); ++id) ASSERT_EQ(new_reader.termOf(id), old_reader.termOf(id));
-  QuadCursor old_quads = old_reader.scan({}, QuadOrder::Posg);
-  QuadCursor new_quads = new_reader.scan({}, QuadOrder::Posg);
-  for (QuadIds one, other; old_quads.next(one);) {
-    ASSERT_TRUE(new_quads.next(other));
-    ASSERT_EQ(one, other);
+  for (const CopiedPages pages : {CopiedPages::Filled, CopiedPages::AsTheyAre}) {
+    const fs::path target = folder_.path() / (pages == CopiedPages::Filled ? "small.clx" : "copy.clx");
+    environment->compactTo(target, pages);
+    EXPECT_LT(fs::file_size(target), fs::file_size(file_));
+    EXPECT_THROW(environment->compactTo(target, pages), Error) << "an existing file is not overwritten";
+    EXPECT_FALSE(fs::exists(lockFileOf(target)));
+    EXPECT_TRUE(checkMap(target).sound());
+    EXPECT_LE(freeSpaceOf(Environment::open(target, OpenMode::ReadOnly)->read()).in_free_pages / 4096, 1U);
+    const auto copy = Environment::open(target, OpenMode::ReadOnly);
+    const ReadTransaction before = environment->read();
+    const ReadTransaction after = copy->read();
+    EXPECT_EQ(after.block("t", "a"), before.block("t", "a"));
+    const QuadReader old_reader(before);
+    const QuadReader new_reader(after);
+    ASSERT_EQ(new_reader.size(), old_reader.size());
+    for (TermId id = 1; id <= old_reader.termCount(); ++id) ASSERT_EQ(new_reader.termOf(id), old_reader.termOf(id));
+    QuadCursor old_quads = old_reader.scan({}, QuadOrder::Posg);
+    QuadCursor new_quads = new_reader.scan({}, QuadOrder::Posg);
+    for (QuadIds one, other; old_quads.next(one);) {
+      ASSERT_TRUE(new_quads.next(other));
+      ASSERT_EQ(one, other);
+    }
+    // The copy goes on as any other map.
+    const auto writing = Environment::open(target, OpenMode::ReadWrite);
+    WriteTransaction transaction = writing->write();
+    QuadWriter writer(transaction);
+    writer.add({Term::iri("new"), Term::iri("p"), Term::integer(1), Term::iri("")});
+    writer.flush();
+    transaction.commit();
+    EXPECT_EQ(QuadReader(writing->read()).size(), old_reader.size() + 1);
+    EXPECT_TRUE(checkMap(target).sound());
   }
 }
 

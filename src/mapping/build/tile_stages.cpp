@@ -120,8 +120,8 @@ class OutputReader {
 /// Outputs in the tables of one write transaction.
 class MapOutputStore final : public perception::OutputStore {
  public:
-  MapOutputStore(rdf::WriteTransaction& transaction, OutputChanges& changes)
-      : transaction_(transaction), scans_(transaction), tiles_(storedTiles(transaction)), changes_(changes) {}
+  MapOutputStore(rdf::WriteTransaction& transaction, RecentScans& scans, OutputChanges& changes)
+      : transaction_(transaction), scans_(scans), tiles_(storedTiles(transaction)), changes_(changes) {}
 
   TileSet tiles() const override { return tiles_; }
 
@@ -160,16 +160,16 @@ class MapOutputStore final : public perception::OutputStore {
   }
 
   rdf::WriteTransaction& transaction_;
-  RecentScans scans_;
+  RecentScans& scans_;
   TileSet tiles_, changed_even_;
   OutputChanges& changes_;
 };
 
-/// Outputs that another map has stored.
+/// Outputs that another map has stored. Its scans were copied: they are read together with those of the map.
 class OtherMap final : public perception::OutputDonor {
  public:
-  explicit OtherMap(const rdf::ReadTransaction& transaction)
-      : transaction_(transaction), scans_(transaction), tiles_(storedTiles(transaction)) {}
+  OtherMap(const rdf::ReadTransaction& transaction, RecentScans& scans)
+      : transaction_(transaction), scans_(scans), tiles_(storedTiles(transaction)) {}
 
   const TileSet& tiles() const override { return tiles_; }
   std::string_view bytes(Stage stage, const TileKey& key) const override {
@@ -182,7 +182,7 @@ class OtherMap final : public perception::OutputDonor {
 
  private:
   const rdf::ReadTransaction& transaction_;
-  mutable RecentScans scans_;
+  RecentScans& scans_;
   TileSet tiles_;
 };
 
@@ -213,11 +213,12 @@ TileSet TileStages::computeAnew(rdf::WriteTransaction& transaction, TileSet tile
 
 TileSet TileStages::run(rdf::WriteTransaction& transaction, PointChanges changes, unsigned threads, bool compute_anew,
                         ProgressSink& sink) {
-  MapOutputStore store(transaction, changes_);
+  RecentScans scans(transaction);
+  MapOutputStore store(transaction, scans, changes_);
   StageProgress progress(sink);
   std::optional<OtherMap> donor;
   if (changes.copied != nullptr) {
-    donor.emplace(*changes.copied);
+    donor.emplace(*changes.copied, scans);
     changes_.has_copied_map = true;
   }
   if (donor || !changes.added.empty() || !changes.anew.empty())

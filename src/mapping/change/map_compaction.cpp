@@ -23,9 +23,8 @@ namespace {
 
 constexpr std::uint64_t kSmallestGain = std::uint64_t{1} << 20U;
 
-bool isSparse(const rdf::FreeSpace& space, double max_free_share) {
-  return space.bytes > kSmallestGain &&
-         static_cast<double>(space.bytes) > max_free_share * static_cast<double>(space.file_bytes);
+bool isMuch(std::uint64_t bytes, const rdf::FreeSpace& space, double max_free_share) {
+  return bytes > kSmallestGain && static_cast<double>(bytes) > max_free_share * static_cast<double>(space.file_bytes);
 }
 
 struct stat statusOf(const fs::path& file) {
@@ -61,14 +60,14 @@ void noteFailure(const fs::path& map, const std::exception& error, ProgressSink&
 }  // namespace
 
 /// Locks out other writers: what they commit while the file is replaced would be lost.
-void compactMap(const fs::path& map) {
+void compactMap(const fs::path& map, rdf::CopiedPages pages) {
   const fs::path file = withoutLinks(map), copy = copyOf(map);
   const BuildLock no_build(file);
   const auto environment = rdf::Environment::open(file, rdf::OpenMode::ReadWrite);
   const rdf::WriteTransaction no_other_writer = environment->write();
   removeCopy(copy);  // left by a killed run
   try {
-    environment->compactTo(copy);
+    environment->compactTo(copy, pages);
     keepOwner(copy, file);
     rdf::replaceMapFile(copy, file);
   } catch (...) {
@@ -88,12 +87,13 @@ void compactIfSparse(const fs::path& map, ProgressSink& sink, double max_free_sh
 
 void compactIfSparse(const fs::path& map, const rdf::FreeSpace& space, ProgressSink& sink, double max_free_share) {
   try {
-    if (!fs::exists(copyOf(map)) && !isSparse(space, max_free_share)) return;
+    if (!fs::exists(copyOf(map)) && !isMuch(space.bytes, space, max_free_share)) return;
     if (statusOf(map).st_nlink > 1)
       throw Error(ErrorKind::StoreUnavailable, "it has another name (a hard link), which would keep the old file");
     if (fs::space(fs::absolute(withoutLinks(map)).parent_path()).available < fs::file_size(map))
       throw Error(ErrorKind::StoreUnavailable, "there is no room beside it for a copy");
-    compactMap(map);
+    const bool pages_are_full = !isMuch(space.bytes - space.in_free_pages, space, max_free_share);
+    compactMap(map, pages_are_full ? rdf::CopiedPages::AsTheyAre : rdf::CopiedPages::Filled);
   } catch (const std::exception& error) {
     noteFailure(map, error, sink);
   }

@@ -9,17 +9,19 @@
 
 namespace cluxel::mapping {
 
-/// Rewrites a map without free pages and half-filled ones, and replaces it by a rename. Readers go on with the old
-/// file. The new file has the owner, group and rights of the old one. Takes the build lock; other writers wait or are
-/// refused. Throws Error (StoreUnavailable) when the map is damaged or cannot be written; it is then as before.
-void compactMap(const std::filesystem::path& map);
+/// Rewrites a map without free pages, nor half-filled ones if `pages` are filled, and replaces it by a rename. Readers
+/// go on with the old file. The new file has the owner, group and rights of the old one. Takes the build lock; other
+/// writers wait or are refused. Throws Error (StoreUnavailable) when the map is damaged or cannot be written; it is
+/// then as before.
+void compactMap(const std::filesystem::path& map, rdf::CopiedPages pages = rdf::CopiedPages::Filled);
 
 /// A finished map is made small, and what was retracted leaves the file. After other changes free pages may stay: the
 /// next change writes into them, and a rewrite after each would cost more than the change itself.
 inline constexpr double kMaxFreeShare = 0.05, kMaxFreeShareOfChanged = 0.25;
 
 /// Compacts a map when that frees more than this share of it, and more than a mebibyte. So the cost follows the
-/// changes that left the space. Where it fails, the map stays larger, and a note tells why.
+/// changes that left the space. Pages are filled only where they have much of the free space. Where it fails, the map
+/// stays larger, and a note tells why.
 void compactIfSparse(const std::filesystem::path& map, ProgressSink& sink, double max_free_share = kMaxFreeShare);
 /// The same when what it would free is known.
 void compactIfSparse(const std::filesystem::path& map, const rdf::FreeSpace& space, ProgressSink& sink,

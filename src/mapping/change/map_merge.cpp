@@ -73,7 +73,7 @@ class Merge {
     base_ = largest();
     if (fs::exists(target_) && !params_.force) return reportOfMerged();
     removeBeside();
-    rdf::Environment::open(maps_[base_].file, rdf::OpenMode::ReadOnly)->compactTo(beside_);
+    rdf::Environment::open(maps_[base_].file, rdf::OpenMode::ReadOnly)->compactTo(beside_, rdf::CopiedPages::AsTheyAre);
     ChangeReport report = addOthers();
     if (!params_.change.dry_run) replaceTarget();
     return report;

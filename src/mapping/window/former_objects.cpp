@@ -48,7 +48,7 @@ std::vector<ObjectMembers> storedMembers(const rdf::ReadTransaction& transaction
   forEachStoredLayer(transaction, [&](const TileLayer& layer) {
     const auto summary = transaction.block(tables::kSummaries, tables::keyOf(layer.key));
     if (!summary) refuseMissingBlock();
-    members.add(layer, perception::summaryTileFromBytes(*summary), [](const ContentHash&) { return true; });
+    members.add(layer, perception::seedsFromBytes(*summary), [](const ContentHash&) { return true; });
   });
   return members.take();
 }

@@ -125,14 +125,29 @@ std::string toBytes(const SummaryTile& tile) {
   return writer.take();
 }
 
-SummaryTile summaryTileFromBytes(std::string_view bytes) {
-  TileReader reader(bytes, "SUMM", 1);
+namespace {
+
+SummaryTile readSeeds(TileReader& reader) {
   SummaryTile tile;
   tile.key = reader.key();
   tile.scans = reader.getMany<scan::ScanId>();
   tile.seed_scan = reader.getMany<std::uint32_t>();
-  const std::size_t count = tile.seed_scan.size();
-  tile.seed_point = reader.getSteps(count);
+  tile.seed_point = reader.getSteps(tile.seed_scan.size());
+  reader.require(allBelow(tile.seed_scan, tile.scans.size()), "names a scan that it does not list");
+  return tile;
+}
+
+}  // namespace
+
+SummaryTile seedsFromBytes(std::string_view bytes) {
+  TileReader reader(bytes, "SUMM", 1);
+  return readSeeds(reader);
+}
+
+SummaryTile summaryTileFromBytes(std::string_view bytes) {
+  TileReader reader(bytes, "SUMM", 1);
+  SummaryTile tile = readSeeds(reader);
+  const std::size_t count = tile.size();
   tile.point_count = reader.getMany<std::uint32_t>(count);
   tile.mean = reader.getMany<Eigen::Vector3f>(count);
   tile.box_min = reader.getMany<Eigen::Vector3f>(count);
@@ -152,8 +167,7 @@ SummaryTile summaryTileFromBytes(std::string_view bytes) {
     tile.view_offset.push_back(static_cast<std::uint32_t>(sum));
   }
   reader.require(sum == tile.view_scan.size(), "has more views than it counts");
-  reader.require(allBelow(tile.seed_scan, tile.scans.size()) && allBelow(tile.view_scan, tile.scans.size()),
-                 "names a scan that it does not list");
+  reader.require(allBelow(tile.view_scan, tile.scans.size()), "names a scan that it does not list");
   reader.require(areViews(tile), "has views that are not its cluxels'");
   return tile;
 }

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Copies a map table by table in key order, which fills all pages and leaves none free.
+// Copies a map table by table in key order, which fills all pages and leaves none free, or page by page.
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
 #include <optional>
 
 #include "cluxel/error.hpp"
@@ -111,22 +115,69 @@ void copyAll(const ReadTransaction& from, Environment& to) {
   transaction.commit();
 }
 
+/// Copies the pages of the newest commit that are not free. False when that is not `from` any more, or LMDB cannot.
+bool copyPages(const ReadTransaction& from, const fs::path& target) {
+  const LmdbEnvironment& environment = *from.impl().environment;
+  const int file = ::open(target.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  if (file < 0) failStore(target, errno, "create the map");
+  const int code = mdb_env_copyfd2(environment.handle(), file, MDB_CP_COMPACT);
+  const bool is_closed = ::close(file) == 0;
+  return code == MDB_SUCCESS && is_closed && environment.read().commitNumber() == from.commitNumber();
+}
+
+void verifyBlocks(const ReadTransaction::Impl& from) {
+  const CursorHandle source = from.cursorOn(Table::Blocks, "read a table");
+  MDB_val key;
+  MDB_val value;
+  int code = mdb_cursor_get(source.get(), &key, &value, MDB_FIRST);
+  for (; code == MDB_SUCCESS; code = mdb_cursor_get(source.get(), &key, &value, MDB_NEXT))
+    verifiedBlock(toView(key), toView(value), from.environment->file());
+  if (code != MDB_NOTFOUND) from.check(code, "read a table");
+}
+
+/// What a file knows of its commits has their numbers, and the copy begins to count anew.
+void renumber(const ReadTransaction& from, const StoreSums& sums, const fs::path& target) {
+  const auto copy = std::dynamic_pointer_cast<LmdbEnvironment>(Environment::open(target, OpenMode::ReadWrite));
+  copy->startWithPagesOf(*from.impl().environment, sums);
+  WriteTransaction transaction = copy->write();
+  carryStamps(from, transaction);
+  ++transaction.impl().generation;
+  transaction.commit();
+}
+
+/// False where the entries have to be copied one by one.
+bool copyAsItIs(const ReadTransaction& from, const fs::path& target) {
+  const auto sums = storedSums(from.impl(), mdb_txn_id(from.impl().live()));
+  if (!sums) return false;
+  verifyBlocks(from.impl());
+  if (!copyPages(from, target)) {
+    fs::remove(target);
+    return false;
+  }
+  renumber(from, *sums, target);
+  return true;
+}
+
 }  // namespace
 
-void LmdbEnvironment::compactTo(const fs::path& target) const {
+void LmdbEnvironment::compactTo(const fs::path& target, CopiedPages pages) const {
   const ReadTransaction snapshot = read();
   checkMapStructure(data_lock_, file_, mdb_txn_id(snapshot.impl().live()), MapScope::Whole);
   snapshotOf(snapshot.impl()).verify(snapshot.impl());
-  std::shared_ptr<Environment> copy = Environment::open(target, OpenMode::Create);
+  std::shared_ptr<Environment> copy;
   std::error_code ignored;
+  const bool is_there = fs::exists(target);
   try {
-    copyAll(snapshot, *copy);
-    copy.reset();
+    if (is_there || pages == CopiedPages::Filled || !copyAsItIs(snapshot, target)) {
+      copy = Environment::open(target, OpenMode::Create);
+      copyAll(snapshot, *copy);
+      copy.reset();
+    }
     fs::remove(lockFileOf(target), ignored);
   } catch (...) {
     copy.reset();
-    fs::remove(target, ignored);
-    fs::remove(lockFileOf(target), ignored);
+    if (!is_there)
+      for (const fs::path& made : {target, lockFileOf(target)}) fs::remove(made, ignored);
     throw;
   }
 }

@@ -17,6 +17,10 @@ enum class OpenMode { ReadOnly, ReadWrite, Create };  ///< Create: the file must
 class ReadTransaction;
 class WriteTransaction;
 
+/// Filled: all entries are written anew in the order of their keys, so that no page of the copy is half empty.
+/// AsTheyAre: pages are copied as a whole, which takes some tenth of the time.
+enum class CopiedPages : std::uint8_t { Filled, AsTheyAre };
+
 /// An open map file. A process opens a file once; opening it again returns the same environment. Thread-safe.
 /// Throws Error (StoreUnavailable) with file and remedy: not a map, newer format, locked, disk full.
 class Environment : public std::enable_shared_from_this<Environment> {
@@ -31,8 +35,8 @@ class Environment : public std::enable_shared_from_this<Environment> {
   /// Starts the write transaction. Waits for another writer of this process; throws when another process is writing.
   virtual WriteTransaction write() = 0;
   virtual const std::filesystem::path& file() const = 0;
-  /// Writes a compact copy to `target`.
-  virtual void compactTo(const std::filesystem::path& target) const = 0;
+  /// Writes a copy without free pages to `target`, which must not be there.
+  virtual void compactTo(const std::filesystem::path& target, CopiedPages pages = CopiedPages::Filled) const = 0;
 };
 
 /// A snapshot of one commit. Also the base of a write transaction, which sees its own writes.

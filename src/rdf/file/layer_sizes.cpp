@@ -122,7 +122,8 @@ FreeSpace freeSpaceOf(const ReadTransaction& transaction) {
   MDB_stat stat;
   state.check(mdb_stat(state.live(), state.environment->mainTable(), &stat), "read the map");
   const std::uint64_t page = stat.ms_psize;
-  FreeSpace space{freePages(state) * page, fileBytes(state, page)};
+  const std::uint64_t in_free_pages = freePages(state) * page;
+  FreeSpace space{in_free_pages, fileBytes(state, page), in_free_pages};
   StoreSnapshot& snapshot = snapshotOf(state);
   if (!snapshot.isMapped()) return space;  // then the pages of indexes are not known without reading them
   for (const Table index : state.environment->indexes()) {

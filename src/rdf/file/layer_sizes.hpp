@@ -26,6 +26,7 @@ std::vector<LayerSize> layerSizes(const ReadTransaction& transaction);
 /// free pages is read.
 struct FreeSpace {
   std::uint64_t bytes = 0, file_bytes = 0;  ///< and the part of the file that the commit knows
+  std::uint64_t in_free_pages = 0;          ///< of `bytes`
 };
 FreeSpace freeSpaceOf(const ReadTransaction& transaction);
 

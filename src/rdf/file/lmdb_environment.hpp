@@ -55,7 +55,7 @@ class LmdbEnvironment final : public Environment {
   ReadTransaction read() const override;
   WriteTransaction write() override;
   const std::filesystem::path& file() const override { return file_; }
-  void compactTo(const std::filesystem::path& target) const override;
+  void compactTo(const std::filesystem::path& target, CopiedPages pages) const override;
 
   std::uint64_t fileSize() const;  ///< at this moment
   MDB_env* handle() const { return handle_.get(); }
@@ -91,6 +91,8 @@ class LmdbEnvironment final : public Environment {
     format_ = other.format_.load();
     is_copy_ = true;
   }
+  /// The same for a file that has the pages of a commit with these sums: the next commit numbers them.
+  void startWithPagesOf(const LmdbEnvironment& other, const StoreSums& sums);
   /// True for the last commit of this process: what it read was verified, so what it wrote need not be.
   bool wrote(std::size_t transaction_id) const { return own_commit_ == transaction_id; }
   /// `checked`: of the commit before.
@@ -118,7 +120,8 @@ class LmdbEnvironment final : public Environment {
   std::atomic<bool> writing_allowed_{false};
   std::atomic<int> format_{kMapFormat};
   std::atomic<bool> is_copy_{false};
-  std::atomic<bool> verified_{false};  ///< writers may trust the file
+  std::optional<StoreSums> copied_sums_;  ///< for the first commit to a copy
+  std::atomic<bool> verified_{false};     ///< writers may trust the file
   std::atomic<std::size_t> own_commit_{0}, structure_commit_{0};
   mutable std::mutex checked_mutex_;
   std::shared_ptr<CheckedParts> checked_;  ///< of the own commit

@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <charconv>
 #include <stdexcept>
+#include <utility>
 
 #include "cluxel/error.hpp"
 #include "rdf/file/check/map_structure.hpp"
@@ -218,8 +219,18 @@ std::shared_ptr<CheckedParts> LmdbEnvironment::checkedPartsOf(std::size_t transa
   return checked_ && wrote(transaction_id) ? checked_ : std::make_shared<CheckedParts>();
 }
 
+/// What is copied was verified in the other file. LMDB numbers the commit of a copy anew.
+void LmdbEnvironment::startWithPagesOf(const LmdbEnvironment& other, const StoreSums& sums) {
+  startCopyOf(other);
+  copied_sums_ = sums;
+  verified_ = true;
+  own_commit_ = mdb_txn_id(read().impl().live());
+}
+
 void LmdbEnvironment::startSums(WriteTransaction& transaction, std::size_t commit) {
-  if (const auto sums = storedSums(transaction.impl(), commit))
+  if (copied_sums_)
+    transaction.impl().sums = *std::exchange(copied_sums_, {});
+  else if (const auto sums = storedSums(transaction.impl(), commit))
     transaction.impl().sums = *sums;
   else
     makeSums(transaction);
