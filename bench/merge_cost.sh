@@ -1,14 +1,14 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Merging two maps of 19 generated scans each, with a border of a tenth of the area, against building the map of all 38.
+# Merging two maps of some generated scans each, with a border of a tenth of the area, against building the map of all.
 # Usage: bench/merge_cost.sh CLUXEL OUT [RANGE]: RANGE of the laser [m] (47), which sets the width of the border
-# ROUNDS (3): medians of so many. The aim is at most 0.20.
+# ROUNDS (3): medians of so many. SCANS (19): of each map, on a campus of SIZE (100) metres. The aim is at most 0.20.
 set -euo pipefail
 [ $# -ge 2 ] || { sed -n '4s/^# //p' "$0" >&2; exit 2; }
-cluxel=$1 out=$2 range=${3:-47} here=$(dirname "$0") rounds=${ROUNDS:-3}
+cluxel=$1 out=$2 range=${3:-47} here=$(dirname "$0") rounds=${ROUNDS:-3} each=${SCANS:-19} size=${SIZE:-100}
 mkdir -p "$out"
-scans=$out/scans_$range
-[ -d "$scans" ] || "$cluxel" simulate "$scans" --seed 43 --city 2x1 --stops 19 --max-range "$range" >/dev/null 2>&1
+scans=$out/scans_${each}_$range
+[ -d "$scans" ] || "$cluxel" simulate "$scans" --seed 43 --city 2x1 --size "$size" --stops "$each" --max-range "$range" >/dev/null 2>&1
 
 median() { sort -n | awk '{ v[NR] = $1 } END { print v[int((NR + 1) / 2)] }'; }
 seconds() { # seconds COMMAND...: the median of some rounds

@@ -8,6 +8,7 @@
 #include "cluxel/error.hpp"
 #include "mapping/build/batch_size.hpp"
 #include "mapping/change/map_compaction.hpp"
+#include "mapping/change/place_order.hpp"
 #include "mapping/change/scan_additions.hpp"
 #include "mapping/facts/map_history.hpp"
 #include "mapping/map_state.hpp"
@@ -125,22 +126,17 @@ struct Move {
   Cloud before;
 };
 
-/// Those poses that scans do not have yet, from place to place, so that a batch changes few tiles that others change,
-/// too.
+/// Those poses that scans do not have yet, from place to place.
 std::vector<Move> movesTo(const std::vector<ScanPose>& poses, const rdf::ReadTransaction& transaction) {
   std::vector<Move> moves;
-  Eigen::AlignedBox2d area;
   for (const ScanPose& pose : poses) {
     Cloud cloud = requiredCloud(transaction, pose.scan);
     if (cloud.has_pose && cloud.T_map_sensor.matrix() == pose.T_map_sensor.matrix()) continue;
     moves.push_back({pose, std::move(cloud)});
-    area.extend(Eigen::Vector2d(pose.T_map_sensor.translation().head<2>()));
   }
-  const Eigen::Index axis = !moves.empty() && area.sizes().y() > area.sizes().x() ? 1 : 0;
-  const auto place = [&](const Move& move) {
-    return std::pair(move.pose.T_map_sensor.translation()[axis], move.pose.scan);
-  };
-  std::sort(moves.begin(), moves.end(), [&](const Move& a, const Move& b) { return place(a) < place(b); });
+  sortAlongLongerSide(
+      moves, [](const Move& move) { return move.pose.T_map_sensor.translation().head<2>(); },
+      [](const Move& move) { return move.pose.scan; });
   return moves;
 }
 

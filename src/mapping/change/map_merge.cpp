@@ -11,6 +11,7 @@
 #include "mapping/build/operator_statements.hpp"
 #include "mapping/change/map_compaction.hpp"
 #include "mapping/change/map_things.hpp"
+#include "mapping/change/place_order.hpp"
 #include "mapping/change/scan_additions.hpp"
 #include "mapping/facts/map_history.hpp"
 #include "mapping/map_reader.hpp"
@@ -269,7 +270,11 @@ class Merge {
   }
 
   void addScans(std::size_t number, ScanAdditions& additions) {
-    const std::vector<Cloud> clouds = readers_[number].clouds();
+    std::vector<Cloud> clouds = readers_[number].clouds();
+    const auto place_of = [&](const Cloud& cloud) -> Eigen::Vector2d {
+      return (maps_[number].T_first_map * Eigen::Vector3d((cloud.min + cloud.max) / 2)).head<2>();
+    };
+    sortAlongLongerSide(clouds, place_of, [](const Cloud& cloud) { return cloud.id; });
     for (std::size_t i = 0; i < clouds.size(); ++i) {
       scan::Scan scan = readers_[number].scanOf(clouds[i].id);
       scan.T_map_sensor = maps_[number].T_first_map * scan.T_map_sensor;

@@ -7,7 +7,8 @@
 #include "mapping/build/scan_store.hpp"
 #include "mapping/layers/stored_layers.hpp"
 #include "mapping/map_tables.hpp"
-#include "mapping/statements/statement_facts.hpp"
+#include "mapping/presence/object_rows.hpp"
+#include "mapping/statements/statement_places.hpp"
 #include "mapping/window/window_presence.hpp"
 #include "rdf/vocabulary.hpp"
 
@@ -19,10 +20,6 @@ using perception::TileKey;
 
 /// Rings around the tiles of both maps that are decided anew at least. The number was chosen, not measured.
 constexpr int kRingsDecided = 2;
-
-bool hasStatements(const rdf::ReadTransaction& map) {
-  return !storedStatements(rdf::QuadReader(map)).empty();
-}
 
 bool hasWideObjectsButGround(const rdf::ReadTransaction& map) {
   bool has = false;
@@ -56,15 +53,16 @@ std::vector<Eigen::AlignedBox3d> raysOfOthers(const std::vector<SeenCloud>& a, c
   return changedRays(common, a);
 }
 
-/// Whether less than `max_share` of the tiles is likely to be decided anew.
-bool leavesMostAlone(const TileSet& own, const TileSet& of_lender, double max_share) {
+/// The share of all tiles that is decided anew at least: those of both maps, or where there are none those beside the
+/// other map, with some rings around.
+double leastShareDecided(const TileSet& own, const TileSet& of_lender) {
   TileSet decided;
   std::set_intersection(own.begin(), own.end(), of_lender.begin(), of_lender.end(),
                         std::inserter(decided, decided.end()));
   if (decided.empty()) decided = perception::withRing(perception::grown(own), of_lender);
   const TileSet all = perception::unionOf(own, of_lender);
   for (int ring = 0; ring < kRingsDecided; ++ring) decided = perception::withRing(decided, all);
-  return static_cast<double>(decided.size()) <= max_share * static_cast<double>(all.size());
+  return static_cast<double>(decided.size()) / static_cast<double>(all.size());
 }
 
 void copyBlock(rdf::WriteTransaction& into, const rdf::ReadTransaction& from, std::string_view table,
@@ -77,13 +75,12 @@ void copyBlock(rdf::WriteTransaction& into, const rdf::ReadTransaction& from, st
 
 bool canLendDecisions(const rdf::ReadTransaction& map, const rdf::ReadTransaction& lender, double max_share) {
   const std::optional<SemanticState> own = storedSemanticState(map), other = storedSemanticState(lender);
-  if (!own || !other || !leavesMostAlone(storedTiles(map), storedTiles(lender), max_share)) return false;
+  if (!own || !other || leastShareDecided(storedTiles(map), storedTiles(lender)) > max_share) return false;
   const auto clouds = unionOfClouds(own->clouds, other->clouds);
   if (!clouds || tellsPresence(own->clouds) != tellsPresence(*clouds) ||
       tellsPresence(other->clouds) != tellsPresence(*clouds))
     return false;
-  return !hasStatements(map) && !hasStatements(lender) && !hasWideObjectsButGround(map) &&
-         !hasWideObjectsButGround(lender);
+  return !hasWideObjectsButGround(map) && !hasWideObjectsButGround(lender);
 }
 
 LentDecisions::LentDecisions(rdf::WriteTransaction& transaction, const rdf::ReadTransaction& lender)
@@ -99,12 +96,16 @@ LentDecisions::LentDecisions(rdf::WriteTransaction& transaction, const rdf::Read
                                 tilesOfPassedObjects(lender, raysOfOthers(state_.clouds, other.clouds)));
   state_.clouds = unionOfClouds(state_.clouds, other.clouds).value();
   state_.cluxels += other.cluxels, state_.primitives += other.primitives;
+  std::set<ContentHash> statements(state_.statements.begin(), state_.statements.end());
+  statements.insert(other.statements.begin(), other.statements.end());
+  state_.statements.assign(statements.begin(), statements.end());
 }
 
 void LentDecisions::lend(OutputChanges& changes, TileStages& stages) {
   readCommonTiles();
   lendRows();
   lendRecords();
+  lendStatements();
   noteChanges(changes, stages);
   facts_.emplace(lender_, not_lent_);
 }
@@ -155,6 +156,15 @@ void LentDecisions::lendRecord(const ContentHash& id, const ObjectRecord& record
   }
   if (!widened_.contains(id)) added_.insert(id);
   transaction_.putBlock(tables::kObjects, tables::keyOf(id), toBytes(now));
+}
+
+/// What the map has of statements is written anew by each run that takes some of them, and by one over the whole map.
+void LentDecisions::lendStatements() {
+  copyRows(transaction_, tables::kOverruled, lender_);
+  StatementTiles tiles = storedStatementTiles(transaction_);
+  for (const auto& [statement, places] : storedStatementTiles(lender_))
+    tiles[statement].insert(places.begin(), places.end());
+  storeStatementTiles(transaction_, tiles);
 }
 
 void LentDecisions::noteChanges(OutputChanges& changes, TileStages& stages) const {

@@ -16,10 +16,9 @@
 
 namespace cluxel::mapping {
 
-/// Whether a map may take over what `lender`, a map of the same inputs and frame, decided: neither has statements of an
-/// operator, objects of a whole class are ground only, scans of both have the same pose and time, and facts about
-/// presence are told in both or in none. False also where more than `max_share` of all tiles are likely to be decided
-/// anew.
+/// Whether a map may take over what `lender`, a map of the same inputs and frame, decided: objects of a whole class are
+/// ground only, scans of both have the same pose and time, and facts about presence are told in both or in none. False
+/// also where more than `max_share` of all tiles would be decided anew.
 bool canLendDecisions(const rdf::ReadTransaction& map, const rdf::ReadTransaction& lender, double max_share);
 
 /// Lends layers, records, margins, ways and facts of the tiles that only the lender had. With them the map is what two
@@ -32,12 +31,12 @@ class LentDecisions {
   /// Gives the map all but the facts. `changes` then tells what differs from the map of each tile. Cost: that of
   /// copying the blocks, and some 10 us for each object and tile of the lender.
   void lend(OutputChanges& changes, TileStages& stages);
-  /// Removes what was lent. Ways stay, which follow from the tiles alone.
+  /// Removes what was lent. Ways stay, which follow from the tiles alone, and what a run over the whole map replaces.
   void takeBack();
   /// Adds the lender's facts about what was lent. Cost: some 2 us a fact.
   void addFacts() { facts_->add(transaction_); }
 
-  /// Of both maps: clouds, counts.
+  /// Of both maps: clouds, statements, counts.
   const SemanticState& state() const { return state_; }
   /// Tiles of both maps, and those of the lender beside tiles of the map: everything in them counts as new.
   const TileSet& seam() const { return seam_; }
@@ -52,6 +51,7 @@ class LentDecisions {
   void readCommonTiles();
   void lendRows();
   void lendRecords();
+  void lendStatements();
   void lendRecord(const ContentHash& id, const ObjectRecord& record);
   void noteChanges(OutputChanges& changes, TileStages& stages) const;
 

@@ -111,7 +111,9 @@ class LocalUpdate {
     }
     more_ = lent_ != nullptr ? lent_->passed()
                              : tilesOfPassedObjects(transaction_, changedRays(before_.clouds, now_.clouds));
-    WindowStatements statements(transaction_, parsed_, stages_, clouds_, changes_, before_, now_);
+    SemanticState stated_before = before_;
+    if (lent_ != nullptr) stated_before.clouds.clear();  // a statement of one map may be about what the other has
+    WindowStatements statements(transaction_, parsed_, stages_, clouds_, changes_, stated_before, now_);
     for (; attempt_ < kMaxAttempts && depth_ < depths_.size() && !statements.needsWholeMap(); ++attempt_) {
       if (check_) check_(0);
       changes_.tiles.insert(statements.tiles().begin(), statements.tiles().end());
