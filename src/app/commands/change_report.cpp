@@ -67,6 +67,7 @@ void printJsonReport(const fs::path& map, const ChangeReport& report, bool dry_r
                  {"tiles_changed", report.tiles_changed},
                  {"tiles_decided", report.tiles_decided},
                  {"local_commits", report.local_commits},
+                 {"maps_taken_over", report.maps_taken_over},
                  {"scans", report.scans},
                  {"tiles", report.tiles},
                  {"statements", statementsJson(report.statements)},

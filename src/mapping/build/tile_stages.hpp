@@ -48,7 +48,7 @@ class TileStages {
   /// Brings the two stages of ways up to date after update() or computeAnew(). Returns whether what some tile
   /// contributes to ways changed since ways were read last. The scene may be taken meanwhile.
   bool updateWays(rdf::WriteTransaction& transaction, unsigned threads);
-  /// The stages of ways count the even ground of `changed` as changed, and no longer that of `kept`.
+  /// The stages of ways count the even ground of `changed` as changed, and that of other tiles in `kept` no longer.
   void noteEven(const perception::TileSet& kept, const perception::TileSet& changed);
   /// All changes since the last call of this function.
   OutputChanges takeChanges() { return std::exchange(changes_, {}); }

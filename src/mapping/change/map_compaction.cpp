@@ -23,7 +23,7 @@ namespace {
 
 constexpr std::uint64_t kSmallestGain = std::uint64_t{1} << 20U;
 
-bool isMuch(std::uint64_t bytes, const rdf::FreeSpace& space, double max_free_share) {
+bool isWorthFreeing(std::uint64_t bytes, const rdf::FreeSpace& space, double max_free_share) {
   return bytes > kSmallestGain && static_cast<double>(bytes) > max_free_share * static_cast<double>(space.file_bytes);
 }
 
@@ -87,12 +87,12 @@ void compactIfSparse(const fs::path& map, ProgressSink& sink, double max_free_sh
 
 void compactIfSparse(const fs::path& map, const rdf::FreeSpace& space, ProgressSink& sink, double max_free_share) {
   try {
-    if (!fs::exists(copyOf(map)) && !isMuch(space.bytes, space, max_free_share)) return;
+    if (!fs::exists(copyOf(map)) && !isWorthFreeing(space.bytes, space, max_free_share)) return;
     if (statusOf(map).st_nlink > 1)
       throw Error(ErrorKind::StoreUnavailable, "it has another name (a hard link), which would keep the old file");
     if (fs::space(fs::absolute(withoutLinks(map)).parent_path()).available < fs::file_size(map))
       throw Error(ErrorKind::StoreUnavailable, "there is no room beside it for a copy");
-    const bool pages_are_full = !isMuch(space.bytes - space.in_free_pages, space, max_free_share);
+    const bool pages_are_full = !isWorthFreeing(space.bytes - space.in_free_pages, space, max_free_share);
     compactMap(map, pages_are_full ? rdf::CopiedPages::AsTheyAre : rdf::CopiedPages::Filled);
   } catch (const std::exception& error) {
     noteFailure(map, error, sink);

@@ -222,6 +222,7 @@ void MapEditor::handOnNames() {
   rdf::WriteTransaction transaction = begin();
   report_.after = storedMembers(transaction);
   report_.objects = compareObjects(report_.before, report_.after);
+  noteStatements();
   if (!last_activity_.empty()) addLineage(transaction, last_activity_, report_.objects);
   writeThings(transaction, dateTimeText(secondsNow()), report_.before, report_.after, ObjectsOf::SeveralMaps);
   if (!params_.dry_run) transaction.commit();
@@ -249,6 +250,10 @@ bool MapEditor::resume() {
   return true;
 }
 
+void MapEditor::noteStatements() const {
+  if (const std::string note = summaryOf(report_.statements); !note.empty()) sink_.note(note);
+}
+
 void MapEditor::report(const rdf::ReadTransaction& transaction, const SemanticUpdate& update) {
   readBefore(transaction);
   report_.has_changes = true;
@@ -256,8 +261,9 @@ void MapEditor::report(const rdf::ReadTransaction& transaction, const SemanticUp
   report_.tiles_changed = changed_.size();
   report_.statements = update.statements;
   report_.local_commits += update.is_local ? 1 : 0;
+  report_.maps_taken_over += update.took_decisions ? 1 : 0;
   report_.tiles_decided += update.tiles_decided;
-  if (const std::string note = summaryOf(update.statements); !note.empty()) sink_.note(note);
+  if (!names_at_end_) noteStatements();
 }
 
 }  // namespace cluxel::mapping

@@ -42,6 +42,7 @@ struct ChangeReport {
   ObjectChanges objects;
   std::vector<StatementOutcome> statements;  ///< what became of the operator's
   std::size_t local_commits = 0;             ///< of which objects and facts were computed around the change alone
+  std::size_t maps_taken_over = 0;           ///< of a merge: maps of which objects and facts were taken
   rdf::FreeSpace free_space;                 ///< of the map afterwards
 };
 
@@ -91,6 +92,7 @@ class MapEditor {
   rdf::QuadReader newest() const;
   void note(SemanticUpdate update);
   void report(const rdf::ReadTransaction& transaction, const SemanticUpdate& update);
+  void noteStatements() const;
 
   std::filesystem::path file_;
   std::optional<BuildLock> lock_;

@@ -209,12 +209,17 @@ class Merge {
       copyHistory(readers_[i].quads(), additions.transaction());
     }
     leaveOutWithdrawn(additions);
+    std::vector<std::size_t> others;
     for (std::size_t i = 0; i < maps_.size(); ++i) {
       if (i == base_) continue;
       const std::vector<ObjectMembers> other = storedMembers(readers_[i].transaction());
       editor.result().before.insert(editor.result().before.end(), other.begin(), other.end());
-      addMap(i, additions);
+      if (isLender(i, additions))
+        additions.copy(readers_[i].transaction(), true);
+      else
+        others.push_back(i);
     }
+    for (const std::size_t i : others) addMap(i, additions);
     additions.finish();
     editor.handOnNames();
     return std::move(editor.result());
@@ -253,20 +258,28 @@ class Merge {
     return inputs;
   }
 
-  /// Copies the scans and tiles of a map that has the frame, model and settings of the result, and takes what it
-  /// decided where it can. A map that only lends its tiles has to fit into one batch. Of others the scans are added one
-  /// by one.
-  void addMap(std::size_t number, ScanAdditions& additions) {
+  /// Whether a map lends its tiles: it has the frame, model and settings of the result.
+  bool isAlike(std::size_t number) const {
     const MapInputs own = inputsOfResult(), inputs = readers_[number].inputs();
-    const bool is_alike = maps_[number].T_first_map.matrix().isIdentity(0) && own.model.text == inputs.model.text &&
-                          perception::hashOf(own.params) == perception::hashOf(inputs.params);
-    const bool is_lender =
-        is_alike && !additions.hasOpenBatch() && own.map_origin == inputs.map_origin && own.crs == inputs.crs &&
-        differencesOf(own, inputs).empty() &&
-        canLendDecisions(additions.transaction(), readers_[number].transaction(), params_.change.max_window_share);
-    if (!is_lender && (!is_alike || readers_[number].summary().points > params_.change.batch_points))
+    return maps_[number].T_first_map.matrix().isIdentity(0) && own.model.text == inputs.model.text &&
+           perception::hashOf(own.params) == perception::hashOf(inputs.params);
+  }
+
+  /// Whether what a map decided is taken, too. That is a commit, which small maps are not worth.
+  bool isLender(std::size_t number, ScanAdditions& additions) const {
+    const MapInputs own = inputsOfResult(), inputs = readers_[number].inputs();
+    const std::uint64_t points = readers_[number].summary().points;
+    const bool is_large = points > params_.change.batch_points || points > readers_[base_].summary().points / 8;
+    return is_large && isAlike(number) && own.map_origin == inputs.map_origin && own.crs == inputs.crs &&
+           differencesOf(own, inputs).empty() &&
+           canLendDecisions(additions.transaction(), readers_[number].transaction(), params_.change.max_window_share);
+  }
+
+  /// Copies the scans and tiles of a map that fits into one batch. Of others the scans are added one by one.
+  void addMap(std::size_t number, ScanAdditions& additions) {
+    if (!isAlike(number) || readers_[number].summary().points > params_.change.batch_points)
       return addScans(number, additions);
-    additions.copy(readers_[number].transaction(), is_lender);
+    additions.copy(readers_[number].transaction(), false);
   }
 
   void addScans(std::size_t number, ScanAdditions& additions) {

@@ -21,8 +21,6 @@ class ScanAdditions {
   /// Copies all scans and tiles of another map, in one batch. The other map must have the frame, the model and the
   /// settings of this one. `is_lender`: what it decided is taken as well, and committed (canLendDecisions()).
   void copy(const rdf::ReadTransaction& other, bool is_lender = false);
-  /// Whether something waits for finish().
-  bool hasOpenBatch() const { return points_ > 0; }
   /// The transaction of the open batch, for other changes. The batch is then committed even without scans.
   rdf::WriteTransaction& transaction();
   /// Commits the last batch.

@@ -112,6 +112,13 @@ class SceneNumbers {
 
 }  // namespace
 
+perception::TileSet tilesOf(const OverruledRecord& record) {
+  perception::TileSet tiles;
+  for (const OverruledRecord::Part& part : record.parts)
+    for (const auto& [tile, numbers] : part.cluxels) tiles.insert(tile);
+  return tiles;
+}
+
 OverruledRecord recordOf(const OverruledObject& object, const perception::Scene& scene) {
   const rules::SemanticObject& made = object.by_rules;
   OverruledRecord record{made.id, object.now, made.class_iri, made.rule_id, made.confidence, made.is_class_wide, {}};

@@ -30,6 +30,8 @@ struct OverruledRecord {
   std::vector<Part> parts;
 };
 
+/// Those with cluxels of it.
+perception::TileSet tilesOf(const OverruledRecord& record);
 OverruledRecord recordOf(const OverruledObject& object, const perception::Scene& scene);
 
 /// Ascending by the names that the rules gave. Throws Error (StoreUnavailable) when they cannot be read.

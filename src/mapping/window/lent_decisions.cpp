@@ -4,10 +4,11 @@
 
 #include <algorithm>
 
+#include "cluxel/error.hpp"
 #include "mapping/build/scan_store.hpp"
 #include "mapping/layers/stored_layers.hpp"
 #include "mapping/map_tables.hpp"
-#include "mapping/presence/object_rows.hpp"
+#include "mapping/statements/overruled_objects.hpp"
 #include "mapping/statements/statement_places.hpp"
 #include "mapping/window/window_presence.hpp"
 #include "rdf/vocabulary.hpp"
@@ -18,7 +19,7 @@ namespace {
 
 using perception::TileKey;
 
-/// Rings around the tiles of both maps that are decided anew at least. The number was chosen, not measured.
+/// Rings around the tiles of both maps that are likely to be decided anew. The number was chosen, not measured.
 constexpr int kRingsDecided = 2;
 
 bool hasWideObjectsButGround(const rdf::ReadTransaction& map) {
@@ -53,9 +54,9 @@ std::vector<Eigen::AlignedBox3d> raysOfOthers(const std::vector<SeenCloud>& a, c
   return changedRays(common, a);
 }
 
-/// The share of all tiles that is decided anew at least: those of both maps, or where there are none those beside the
-/// other map, with some rings around.
-double leastShareDecided(const TileSet& own, const TileSet& of_lender) {
+/// The share of all tiles that is likely to be decided anew: those of both maps, or where there are none those beside
+/// the other map, with some rings around.
+double likelyShareDecided(const TileSet& own, const TileSet& of_lender) {
   TileSet decided;
   std::set_intersection(own.begin(), own.end(), of_lender.begin(), of_lender.end(),
                         std::inserter(decided, decided.end()));
@@ -63,6 +64,15 @@ double leastShareDecided(const TileSet& own, const TileSet& of_lender) {
   const TileSet all = perception::unionOf(own, of_lender);
   for (int ring = 0; ring < kRingsDecided; ++ring) decided = perception::withRing(decided, all);
   return static_cast<double>(decided.size()) / static_cast<double>(all.size());
+}
+
+[[noreturn]] void refuseIncompleteTile() {
+  throw Error(ErrorKind::StoreUnavailable, "a stored tile lacks a block; the map is damaged, build it anew");
+}
+
+TileLayer requiredLayer(const rdf::ReadTransaction& map, const TileKey& tile) {
+  if (std::optional<TileLayer> layer = storedLayer(map, tile)) return *std::move(layer);
+  refuseIncompleteTile();
 }
 
 void copyBlock(rdf::WriteTransaction& into, const rdf::ReadTransaction& from, std::string_view table,
@@ -75,7 +85,7 @@ void copyBlock(rdf::WriteTransaction& into, const rdf::ReadTransaction& from, st
 
 bool canLendDecisions(const rdf::ReadTransaction& map, const rdf::ReadTransaction& lender, double max_share) {
   const std::optional<SemanticState> own = storedSemanticState(map), other = storedSemanticState(lender);
-  if (!own || !other || leastShareDecided(storedTiles(map), storedTiles(lender)) > max_share) return false;
+  if (!own || !other || likelyShareDecided(storedTiles(map), storedTiles(lender)) > max_share) return false;
   const auto clouds = unionOfClouds(own->clouds, other->clouds);
   if (!clouds || tellsPresence(own->clouds) != tellsPresence(*clouds) ||
       tellsPresence(other->clouds) != tellsPresence(*clouds))
@@ -90,14 +100,17 @@ LentDecisions::LentDecisions(rdf::WriteTransaction& transaction, const rdf::Read
   const TileSet of_lender = storedTiles(lender);
   for (const TileKey& tile : of_lender) (own_.contains(tile) ? common_ : lent_).insert(tile);
   seam_ = perception::unionOf(perception::withRing(own_, lent_), common_);
-  state_ = storedSemanticState(transaction).value();
-  const SemanticState other = storedSemanticState(lender).value();
-  passed_ = perception::unionOf(tilesOfPassedObjects(transaction, raysOfOthers(other.clouds, state_.clouds)),
-                                tilesOfPassedObjects(lender, raysOfOthers(state_.clouds, other.clouds)));
-  state_.clouds = unionOfClouds(state_.clouds, other.clouds).value();
-  state_.cluxels += other.cluxels, state_.primitives += other.primitives;
-  std::set<ContentHash> statements(state_.statements.begin(), state_.statements.end());
-  statements.insert(other.statements.begin(), other.statements.end());
+  own_state_ = storedSemanticState(transaction).value();
+  state_of_lender_ = storedSemanticState(lender).value();
+  const std::vector<SeenCloud>&of_own = own_state_.clouds, &of_other = state_of_lender_.clouds;
+  passed_ = perception::unionOf(tilesOfPassedObjects(transaction, raysOfOthers(of_other, of_own)),
+                                tilesOfPassedObjects(lender, raysOfOthers(of_own, of_other)));
+  state_.cluxels = own_state_.cluxels + state_of_lender_.cluxels;
+  state_.primitives = own_state_.primitives + state_of_lender_.primitives;
+  state_.objects = own_state_.objects;
+  state_.clouds = unionOfClouds(of_own, of_other).value();
+  std::set<ContentHash> statements(own_state_.statements.begin(), own_state_.statements.end());
+  statements.insert(state_of_lender_.statements.begin(), state_of_lender_.statements.end());
   state_.statements.assign(statements.begin(), statements.end());
 }
 
@@ -113,14 +126,14 @@ void LentDecisions::lend(OutputChanges& changes, TileStages& stages) {
 /// What the lender decided about tiles of both maps is not taken.
 void LentDecisions::readCommonTiles() {
   for (const TileKey& tile : common_) {
-    const TileLayer layer = storedLayer(lender_, tile).value();
+    const TileLayer layer = requiredLayer(lender_, tile);
     state_.cluxels -= layer.size();
     for (const TileLayer::PrimitiveHere& primitive : layer.primitives) not_lent_.primitives.insert(primitive.id);
     for (const TileLayer::Share& share : layer.shares) not_lent_.objects.insert(share.object);
   }
   std::set<ContentHash> ends_here = not_lent_.primitives;
   for (const TileKey& tile : perception::withRing(common_, lent_)) {
-    const TileLayer layer = storedLayer(lender_, tile).value();
+    const TileLayer layer = requiredLayer(lender_, tile);
     for (const TileLayer::PrimitiveHere& primitive : layer.primitives) ends_here.erase(primitive.id);
   }
   state_.primitives -= ends_here.size();
@@ -146,6 +159,7 @@ void LentDecisions::lendRecord(const ContentHash& id, const ObjectRecord& record
   ObjectRecord now = record;
   if (record.is_class_wide) {
     std::erase_if(now.tiles, [&](const TileKey& tile) { return !is_lent(tile); });
+    passed_.insert(now.tiles.front());
     if (const auto own = storedRecord(transaction_, id)) {
       widened_.emplace(id, toBytes(*own));
       now.tiles.insert(now.tiles.end(), own->tiles.begin(), own->tiles.end());
@@ -158,9 +172,14 @@ void LentDecisions::lendRecord(const ContentHash& id, const ObjectRecord& record
   transaction_.putBlock(tables::kObjects, tables::keyOf(id), toBytes(now));
 }
 
-/// What the map has of statements is written anew by each run that takes some of them, and by one over the whole map.
+/// An object that lies in common tiles alone has a row of the map, if any: it is told anew. A run over the whole map
+/// replaces all of these rows.
 void LentDecisions::lendStatements() {
-  copyRows(transaction_, tables::kOverruled, lender_);
+  for (const OverruledRecord& record : overruledRecords(lender_)) {
+    const TileSet tiles = tilesOf(record);
+    if (std::any_of(tiles.begin(), tiles.end(), [this](const TileKey& tile) { return lent_.contains(tile); }))
+      putOverruled(transaction_, record);
+  }
   StatementTiles tiles = storedStatementTiles(transaction_);
   for (const auto& [statement, places] : storedStatementTiles(lender_))
     tiles[statement].insert(places.begin(), places.end());
@@ -173,10 +192,11 @@ void LentDecisions::noteChanges(OutputChanges& changes, TileStages& stages) cons
     if (haveSameOutput(transaction_, lender_, perception::Stage::Even, tile)) same_even.insert(tile);
     const std::string key = tables::keyOf(tile);
     const auto former = lender_.block(tables::kSummaries, key);
+    if (!former) refuseIncompleteTile();
     if (former == transaction_.block(tables::kSummaries, key))
       changes.former_summaries.erase(tile);
     else
-      changes.former_summaries.insert_or_assign(tile, std::string(former.value()));
+      changes.former_summaries.insert_or_assign(tile, std::string(*former));
     if (haveSameOutputs(transaction_, lender_, tile)) changes.tiles.erase(tile);
   }
   changes.tiles.insert(seam_.begin(), seam_.end());

@@ -18,7 +18,7 @@ namespace cluxel::mapping {
 
 /// Whether a map may take over what `lender`, a map of the same inputs and frame, decided: objects of a whole class are
 /// ground only, scans of both have the same pose and time, and facts about presence are told in both or in none. False
-/// also where more than `max_share` of all tiles would be decided anew.
+/// also where more than `max_share` of all tiles are likely to be decided anew.
 bool canLendDecisions(const rdf::ReadTransaction& map, const rdf::ReadTransaction& lender, double max_share);
 
 /// Lends layers, records, margins, ways and facts of the tiles that only the lender had. With them the map is what two
@@ -33,19 +33,21 @@ class LentDecisions {
   void lend(OutputChanges& changes, TileStages& stages);
   /// Removes what was lent. Ways stay, which follow from the tiles alone, and what a run over the whole map replaces.
   void takeBack();
-  /// Adds the lender's facts about what was lent. Cost: some 2 us a fact.
-  void addFacts() { facts_->add(transaction_); }
+  /// Adds the lender's facts about what was lent. Returns the ground patches (IRIs) that nothing may touch any more.
+  /// Cost: some 2 us a fact.
+  std::set<std::string> addFacts() { return facts_->add(transaction_); }
 
   /// Of both maps: clouds, statements, counts.
   const SemanticState& state() const { return state_; }
+  /// Of each map.
+  std::vector<SemanticState> statesOfMaps() const { return {own_state_, state_of_lender_}; }
   /// Tiles of both maps, and those of the lender beside tiles of the map: everything in them counts as new.
   const TileSet& seam() const { return seam_; }
-  /// Tiles of objects of each map that rays of the other's clouds may pass.
+  /// Tiles of objects of each map that rays of the other's clouds may pass, and one of each object of a whole class,
+  /// which is told anew.
   const TileSet& passed() const { return passed_; }
   /// Whether a decision covers all objects that reach from lent tiles into common ones, and the wide ones.
   bool isCoveredBy(const WindowDecision& decision, const std::vector<rules::SemanticObject>& wide) const;
-  /// Ground patches (IRIs) of which facts may have been lent that nothing touches any more.
-  const std::set<std::string>& touchedPatches() const { return facts_->touchedPatches(); }
 
  private:
   void readCommonTiles();
@@ -58,7 +60,7 @@ class LentDecisions {
   rdf::WriteTransaction& transaction_;
   const rdf::ReadTransaction& lender_;
   TileSet own_, lent_, common_, seam_, passed_;
-  SemanticState state_;
+  SemanticState own_state_, state_of_lender_, state_;
   NotLent not_lent_;
   std::set<ContentHash> reaching_;              ///< objects of the lender in lent and common tiles
   std::set<ContentHash> added_;                 ///< records

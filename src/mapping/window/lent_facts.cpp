@@ -24,8 +24,7 @@ constexpr std::size_t kQuadsAtOnce = 1'000'000;
 /// Adds quads of one map to another.
 class QuadCopy {
  public:
-  QuadCopy(const rdf::QuadReader& from, rdf::WriteTransaction& into)
-      : from_(from), writer_(into), into_(static_cast<const rdf::ReadTransaction&>(into)) {}
+  QuadCopy(const rdf::QuadReader& from, rdf::WriteTransaction& into) : from_(from), writer_(into) {}
 
   void add(std::vector<QuadIds> quads) {
     nameTerms(quads);
@@ -51,7 +50,6 @@ class QuadCopy {
 
   const rdf::QuadReader& from_;
   rdf::QuadWriter writer_;
-  rdf::QuadReader into_;
   std::vector<TermId> name_;  ///< by id in the other map
 };
 
@@ -76,14 +74,18 @@ rdf::TermId LentFacts::idOf(const std::string& iri) const {
 /// The subjects of an object's facts: itself, its parts, its geometry and its observations.
 void LentFacts::leaveOut(const ContentHash& object, Ids& subjects) const {
   const TermId subject = idOf(rdf::iriOfObject(object));
+  if (subject == rdf::kNoTerm) return;
   subjects.insert(subject);
   const std::string geo(vocabulary::kGeo);
   QuadIds quad;
   for (const std::string& property : {vocabulary::clx("hasPart"), geo + "hasCentroid", geo + "hasBoundingBox"}) {
-    rdf::QuadCursor cursor = lender_.scan({.s = subject, .p = idOf(property), .o = {}, .g = graph_});
+    const TermId id = idOf(property);
+    if (id == rdf::kNoTerm) continue;  // in a pattern it would stand for any
+    rdf::QuadCursor cursor = lender_.scan({.s = subject, .p = id, .o = {}, .g = graph_});
     while (cursor.next(quad)) subjects.insert(quad.o);
   }
   const TermId of_object = idOf(std::string(vocabulary::kSosa) + "hasFeatureOfInterest");
+  if (of_object == rdf::kNoTerm) return;
   rdf::QuadCursor cursor = lender_.scan({.s = {}, .p = of_object, .o = subject, .g = graph_});
   while (cursor.next(quad)) subjects.insert(quad.s);
 }
@@ -110,7 +112,7 @@ bool LentFacts::isLent(const QuadIds& quad) {
   return !isOfWay(quad.s);
 }
 
-void LentFacts::add(rdf::WriteTransaction& into) {
+std::set<std::string> LentFacts::add(rdf::WriteTransaction& into) {
   QuadCopy copy(lender_, into);
   std::vector<QuadIds> quads;
   rdf::QuadCursor cursor = lender_.scan({.s = {}, .p = {}, .o = {}, .g = graph_}, rdf::QuadOrder::Gspo);
@@ -119,6 +121,7 @@ void LentFacts::add(rdf::WriteTransaction& into) {
     if (quads.size() == kQuadsAtOnce) copy.add(std::exchange(quads, {}));
   }
   copy.add(std::move(quads));
+  return std::move(touched_patches_);
 }
 
 }  // namespace cluxel::mapping

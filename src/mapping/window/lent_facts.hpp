@@ -22,10 +22,9 @@ class LentFacts {
  public:
   LentFacts(const rdf::ReadTransaction& lender, const NotLent& not_lent);
 
-  /// Adds the facts to the same graph of another map.
-  void add(rdf::WriteTransaction& into);
-  /// The ground patches that primitives touch which are not copied.
-  const std::set<std::string>& touchedPatches() const { return touched_patches_; }
+  /// Adds the facts to the same graph of another map. Returns the ground patches (IRIs) that primitives touch which are
+  /// not copied.
+  std::set<std::string> add(rdf::WriteTransaction& into);
 
  private:
   using Ids = std::unordered_set<rdf::TermId>;

@@ -111,9 +111,8 @@ class LocalUpdate {
     }
     more_ = lent_ != nullptr ? lent_->passed()
                              : tilesOfPassedObjects(transaction_, changedRays(before_.clouds, now_.clouds));
-    SemanticState stated_before = before_;
-    if (lent_ != nullptr) stated_before.clouds.clear();  // a statement of one map may be about what the other has
-    WindowStatements statements(transaction_, parsed_, stages_, clouds_, changes_, stated_before, now_);
+    const std::vector<SemanticState> maps = lent_ != nullptr ? lent_->statesOfMaps() : std::vector{before_};
+    WindowStatements statements(transaction_, parsed_, stages_, clouds_, changes_, maps, now_);
     for (; attempt_ < kMaxAttempts && depth_ < depths_.size() && !statements.needsWholeMap(); ++attempt_) {
       if (check_) check_(0);
       changes_.tiles.insert(statements.tiles().begin(), statements.tiles().end());
@@ -239,10 +238,10 @@ class LocalUpdate {
     count(window, change, update);
     sink_.progress("objects", update.after.size(), update.after.size());
     const bool have_ways = stages_.updateWays(transaction_, params_.threads) || lent_ != nullptr;
-    if (lent_ != nullptr) lent_->addFacts();
+    const std::set<std::string> touched = lent_ != nullptr ? lent_->addFacts() : std::set<std::string>();
     const std::optional<WayGraph> ways = have_ways ? std::optional(storedWays(transaction_)) : std::nullopt;
     writeWindowFacts(transaction_, {parsed_, stages_, clouds_, before_.clouds, decided, statements,
-                                    ways ? &*ways : nullptr, lent_, params_.threads});
+                                    ways ? &*ways : nullptr, touched, params_.threads});
     writeLayers(transaction_, decided, changes_);
     statements.store(transaction_, window);
     if (!now_.statements.empty())
@@ -340,6 +339,7 @@ SemanticUpdate updateSemanticLayer(rdf::WriteTransaction& transaction, const Par
     if (auto update =
             LocalUpdate(transaction, parsed, stages, changes, inputs, params, sink, check, lent ? &*lent : nullptr)
                 .run()) {
+      update->took_decisions = lent.has_value();
       if (changes.has_copied_map)
         for (const std::string_view table : {tables::kPresence, tables::kPassedRays})
           eraseRowsWithoutObject(transaction, table);

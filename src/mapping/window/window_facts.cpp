@@ -45,8 +45,7 @@ class FactWriting {
     replaceWideObjects();
     replaceStatements();
     if (sources_.ways != nullptr) replaceWays();
-    if (sources_.lent != nullptr)
-      for (const std::string& patch : sources_.lent->touchedPatches()) touched_.insert(iri(patch));
+    for (const std::string& patch : sources_.more_patches) touched_.insert(iri(patch));
     patch_.write(facts_.take(), facts_.writer());
     renewPatches();
   }

@@ -2,12 +2,13 @@
 // The observed graph around a change: facts of what was decided anew replace those of what is gone.
 #pragma once
 
+#include <set>
+#include <string>
 #include <vector>
 
 #include "cluxel/progress.hpp"
 #include "mapping/cloud.hpp"
 #include "mapping/facts/semantic_layer.hpp"
-#include "mapping/window/lent_decisions.hpp"
 #include "mapping/window/map_window.hpp"
 #include "mapping/window/semantic_state.hpp"
 #include "mapping/window/window_change.hpp"
@@ -24,8 +25,8 @@ struct WindowFacts {
   const std::vector<SeenCloud>& clouds_before;
   const DecidedWindow& decided;
   const WindowStatements& statements;
-  const WayGraph* ways = nullptr;       ///< null when they are as before
-  const LentDecisions* lent = nullptr;  ///< of another map, if some were
+  const WayGraph* ways = nullptr;             ///< null when they are as before
+  const std::set<std::string>& more_patches;  ///< of the ground (IRIs) that nothing may touch any more
   unsigned threads = 1;
 };
 

@@ -25,13 +25,6 @@ bool includes(const TileSet& all, const TileSet& some) {
   return std::includes(all.begin(), all.end(), some.begin(), some.end());
 }
 
-TileSet tilesOfRecord(const OverruledRecord& record) {
-  TileSet tiles;
-  for (const OverruledRecord::Part& part : record.parts)
-    for (const auto& [tile, numbers] : part.cluxels) tiles.insert(tile);
-  return tiles;
-}
-
 std::set<ContentHash> changedClouds(const std::vector<SeenCloud>& before, const std::vector<SeenCloud>& now) {
   std::map<ContentHash, ContentHash> contents;
   for (const SeenCloud& cloud : before) contents.emplace(cloud.id, cloud.content);
@@ -50,6 +43,32 @@ bool isAnchoredTo(const Statement& statement, const std::set<ContentHash>& cloud
   return std::any_of(statement.points.begin(), statement.points.end(),
                      [&](const auto& points) { return clouds.contains(points.first); });
 }
+
+/// The statements that the maps before had, each with the clouds that have changed for it.
+class Former {
+ public:
+  Former(const std::vector<SemanticState>& maps, const SemanticState& now) {
+    for (const SemanticState& map : maps) {
+      known.insert(map.statements.begin(), map.statements.end());
+      maps_.push_back({{map.statements.begin(), map.statements.end()}, changedClouds(map.clouds, now.clouds)});
+    }
+  }
+  /// Whether a map lacked the statement's clouds as they are now, or no map had the statement.
+  bool isOther(const Statement& statement) const {
+    const ContentHash id = statement.id();
+    return !known.contains(id) || std::any_of(maps_.begin(), maps_.end(), [&](const StatedIn& map) {
+      return map.statements.contains(id) && isAnchoredTo(statement, map.changed_clouds);
+    });
+  }
+
+  std::set<ContentHash> known;  ///< by some map
+
+ private:
+  struct StatedIn {
+    std::set<ContentHash> statements, changed_clouds;
+  };
+  std::vector<StatedIn> maps_;
+};
 
 }  // namespace
 
@@ -71,37 +90,37 @@ struct WindowStatements::Touched {
 
 WindowStatements::WindowStatements(const rdf::ReadTransaction& transaction, const ParsedInputs& parsed,
                                    TileStages& stages, const std::vector<Cloud>& clouds, const OutputChanges& changes,
-                                   const SemanticState& before, const SemanticState& now)
+                                   const std::vector<SemanticState>& before, const SemanticState& now)
     : transaction_(transaction), parsed_(parsed), stages_(stages), clouds_(clouds) {
-  if (before.statements.empty() && now.statements.empty()) return;
+  const Former statements_before(before, now);
+  if (statements_before.known.empty() && now.statements.empty()) return;
   statements_ = storedStatements(rdf::QuadReader(transaction));
   near_change_ = perception::grown(changes.tiles);
   records_ = overruledRecords(transaction);
   const StatementTiles former = storedStatementTiles(transaction);
   const TileSet map = perception::unionOf(storedTiles(transaction), changes.tiles);
-  const std::set<ContentHash> old(before.statements.begin(), before.statements.end());
-  const std::set<ContentHash> moved = changedClouds(before.clouds, now.clouds);
   PointOwners owners(transaction, stages, parsed.model.perception.thin, clouds);
   TileSet concerned;
   for (const Statement& statement : statements_) {
     const ContentHash id = statement.id();
     const auto known = former.find(id);
-    const bool is_changed = !old.contains(id) || known == former.end() || isAnchoredTo(statement, moved);
+    bool is_changed = known == former.end() || statements_before.isOther(statement);
     const bool is_region = statement.kind == StatementKind::IgnoreRegion;
     places_[id] = is_changed || is_region ? tilesOf(statement, owners, clouds, map) : known->second;
+    is_changed = is_changed || (before.size() > 1 && places_[id] != known->second);  // a region in another map
     if (is_changed) concerned_.insert(id);
     if (!is_changed && !haveCommon(places_[id], changes.tiles)) continue;
     concerned.insert(places_[id].begin(), places_[id].end());
     if (known != former.end()) concerned.insert(known->second.begin(), known->second.end());
   }
-  for (const ContentHash& id : before.statements) {
+  for (const ContentHash& id : statements_before.known) {
     if (places_.contains(id)) continue;
     withdrawn_.push_back(id);
     if (const auto known = former.find(id); known != former.end())
       concerned.insert(known->second.begin(), known->second.end());
   }
   for (const OverruledRecord& record : records_)
-    if (const TileSet tiles = tilesOfRecord(record); haveCommon(tiles, changes.tiles))
+    if (const TileSet tiles = tilesOf(record); haveCommon(tiles, changes.tiles))
       concerned.insert(tiles.begin(), tiles.end());
   grow(concerned);
 }
@@ -119,7 +138,7 @@ void WindowStatements::grow(const TileSet& tiles) {
         tiles_.insert(places.begin(), places.end());
       }
     for (const OverruledRecord& record : records_)
-      if (const TileSet own = tilesOfRecord(record); haveCommon(own, tiles_)) tiles_.insert(own.begin(), own.end());
+      if (const TileSet own = tilesOf(record); haveCommon(own, tiles_)) tiles_.insert(own.begin(), own.end());
   }
 }
 
@@ -147,7 +166,7 @@ bool WindowStatements::concernsMixed(const MapWindow& window, const WindowChange
     });
     if (!is_decided) continue;
     erased_.insert(record.by_rules);
-    if (const TileSet own = tilesOfRecord(record); !includes(tiles_, own)) more.insert(own.begin(), own.end());
+    if (const TileSet own = tilesOf(record); !includes(tiles_, own)) more.insert(own.begin(), own.end());
   }
   grow(more);
   return !more.empty();

@@ -19,10 +19,11 @@ namespace cluxel::mapping {
 
 class WindowStatements {
  public:
+  /// `before`: the map as it was, or the maps that were joined; a statement of one may be about what another has.
   /// `now`: the clouds and statements that there are. The references must outlive it.
   WindowStatements(const rdf::ReadTransaction& transaction, const ParsedInputs& parsed, TileStages& stages,
-                   const std::vector<Cloud>& clouds, const OutputChanges& changes, const SemanticState& before,
-                   const SemanticState& now);
+                   const std::vector<Cloud>& clouds, const OutputChanges& changes,
+                   const std::vector<SemanticState>& before, const SemanticState& now);
 
   /// The tiles in which all has to be decided anew because of statements; they count as changed.
   const perception::TileSet& tiles() const { return tiles_; }

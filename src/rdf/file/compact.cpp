@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copies a map table by table in key order, which fills all pages and leaves none free, or page by page.
 #include <fcntl.h>
-#include <unistd.h>
 
 #include <cerrno>
 #include <optional>
@@ -9,6 +8,7 @@
 #include "cluxel/error.hpp"
 #include "rdf/file/check/map_structure.hpp"
 #include "rdf/file/commit_stamps.hpp"
+#include "rdf/file/file_guards.hpp"
 #include "rdf/file/lmdb_environment.hpp"
 #include "rdf/file/lock_file.hpp"
 #include "rdf/file/page_directory.hpp"
@@ -115,14 +115,30 @@ void copyAll(const ReadTransaction& from, Environment& to) {
   transaction.commit();
 }
 
-/// Copies the pages of the newest commit that are not free. False when that is not `from` any more, or LMDB cannot.
-bool copyPages(const ReadTransaction& from, const fs::path& target) {
+/// A file that is removed unless it is kept.
+class MadeFile {
+ public:
+  explicit MadeFile(const fs::path& file) : file_(file) {}
+  MadeFile(const MadeFile&) = delete;
+  MadeFile& operator=(const MadeFile&) = delete;
+  ~MadeFile() {
+    std::error_code ignored;
+    fs::remove(lockFileOf(file_), ignored);
+    if (!is_kept_) fs::remove(file_, ignored);
+  }
+  void keep() { is_kept_ = true; }
+
+ private:
+  const fs::path& file_;
+  bool is_kept_ = false;
+};
+
+/// Copies the pages of the newest commit that are not free. False when that is not `from` any more, or LMDB refuses.
+bool copyPages(const ReadTransaction& from, const fs::path& target, int file) {
   const LmdbEnvironment& environment = *from.impl().environment;
-  const int file = ::open(target.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-  if (file < 0) failStore(target, errno, "create the map");
   const int code = mdb_env_copyfd2(environment.handle(), file, MDB_CP_COMPACT);
-  const bool is_closed = ::close(file) == 0;
-  return code == MDB_SUCCESS && is_closed && environment.read().commitNumber() == from.commitNumber();
+  if (code > 0) failStore(target, code, "write the map");  // of the system: the disk is full, for instance
+  return code == MDB_SUCCESS && environment.read().commitNumber() == from.commitNumber();
 }
 
 void verifyBlocks(const ReadTransaction::Impl& from) {
@@ -150,12 +166,27 @@ bool copyAsItIs(const ReadTransaction& from, const fs::path& target) {
   const auto sums = storedSums(from.impl(), mdb_txn_id(from.impl().live()));
   if (!sums) return false;
   verifyBlocks(from.impl());
-  if (!copyPages(from, target)) {
-    fs::remove(target);
-    return false;
-  }
+  const LowDescriptors low;
+  Descriptor file(::open(target.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
+  if (file.get() < 0) failStore(target, errno, "create the map");
+  MadeFile made(target);
+  if (!copyPages(from, target, file.get())) return false;
   renumber(from, *sums, target);
+  made.keep();
   return true;
+}
+
+void copyEntries(const ReadTransaction& from, const fs::path& target) {
+  std::shared_ptr<Environment> copy = Environment::open(target, OpenMode::Create);
+  MadeFile made(target);
+  try {
+    copyAll(from, *copy);
+  } catch (...) {
+    copy.reset();  // before the file goes
+    throw;
+  }
+  copy.reset();
+  made.keep();
 }
 
 }  // namespace
@@ -164,22 +195,8 @@ void LmdbEnvironment::compactTo(const fs::path& target, CopiedPages pages) const
   const ReadTransaction snapshot = read();
   checkMapStructure(data_lock_, file_, mdb_txn_id(snapshot.impl().live()), MapScope::Whole);
   snapshotOf(snapshot.impl()).verify(snapshot.impl());
-  std::shared_ptr<Environment> copy;
-  std::error_code ignored;
-  const bool is_there = fs::exists(target);
-  try {
-    if (is_there || pages == CopiedPages::Filled || !copyAsItIs(snapshot, target)) {
-      copy = Environment::open(target, OpenMode::Create);
-      copyAll(snapshot, *copy);
-      copy.reset();
-    }
-    fs::remove(lockFileOf(target), ignored);
-  } catch (...) {
-    copy.reset();
-    if (!is_there)
-      for (const fs::path& made : {target, lockFileOf(target)}) fs::remove(made, ignored);
-    throw;
-  }
+  const bool is_copied = pages == CopiedPages::AsTheyAre && !fs::exists(target) && copyAsItIs(snapshot, target);
+  if (!is_copied) copyEntries(snapshot, target);
 }
 
 }  // namespace cluxel::rdf

@@ -18,7 +18,7 @@ class ReadTransaction;
 class WriteTransaction;
 
 /// Filled: all entries are written anew in the order of their keys, so that no page of the copy is half empty.
-/// AsTheyAre: pages are copied as a whole, which takes some tenth of the time.
+/// AsTheyAre: pages are copied as a whole, which takes about a tenth of the time.
 enum class CopiedPages : std::uint8_t { Filled, AsTheyAre };
 
 /// An open map file. A process opens a file once; opening it again returns the same environment. Thread-safe.
