@@ -55,6 +55,7 @@ class ChangeSequence {
     const fs::path fresh = folder_.path() / "fresh.clx";
     build(there_, statements(), fresh);
     EXPECT_TRUE(canonicalText(map()) == canonicalText(fresh)) << "after " << after;
+    EXPECT_EQ(MapReader(map()).overruled().size(), MapReader(fresh).overruled().size()) << "after " << after;
   }
 
   std::size_t stated() const { return stated_; }

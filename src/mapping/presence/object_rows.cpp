@@ -39,9 +39,12 @@ void eraseRowsBut(rdf::WriteTransaction& transaction, std::string_view table, st
             [&](std::string_view key) { return std::binary_search(kept.begin(), kept.end(), tables::hashOfKey(key)); });
 }
 
-void eraseRowsWithoutObject(rdf::WriteTransaction& transaction, std::string_view table) {
-  eraseRows(transaction, table,
-            [&](std::string_view key) { return storedRecord(transaction, tables::hashOfKey(key)).has_value(); });
+void eraseRowsWithoutObject(rdf::WriteTransaction& transaction) {
+  const auto has_object = [&](std::string_view key) {
+    return storedRecord(transaction, tables::hashOfKey(key)).has_value();
+  };
+  for (const std::string_view table : {tables::kPresence, tables::kPassedRays})
+    eraseRows(transaction, table, has_object);
 }
 
 }  // namespace cluxel::mapping

@@ -21,7 +21,7 @@ void putRow(rdf::WriteTransaction& transaction, std::string_view table, const Co
 void copyRows(rdf::WriteTransaction& transaction, std::string_view table, const rdf::ReadTransaction& other);
 /// Removes the rows of all objects but those of `kept`.
 void eraseRowsBut(rdf::WriteTransaction& transaction, std::string_view table, std::vector<ContentHash> kept);
-/// Removes the rows of objects that the map does not have.
-void eraseRowsWithoutObject(rdf::WriteTransaction& transaction, std::string_view table);
+/// Removes what is stored of the presence of objects that the map does not have.
+void eraseRowsWithoutObject(rdf::WriteTransaction& transaction);
 
 }  // namespace cluxel::mapping

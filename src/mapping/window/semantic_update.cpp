@@ -340,9 +340,7 @@ SemanticUpdate updateSemanticLayer(rdf::WriteTransaction& transaction, const Par
             LocalUpdate(transaction, parsed, stages, changes, inputs, params, sink, check, lent ? &*lent : nullptr)
                 .run()) {
       update->took_decisions = lent.has_value();
-      if (changes.has_copied_map)
-        for (const std::string_view table : {tables::kPresence, tables::kPassedRays})
-          eraseRowsWithoutObject(transaction, table);
+      if (changes.has_copied_map) eraseRowsWithoutObject(transaction);
       return *std::move(update);
     }
   if (lent) lent->takeBack();
