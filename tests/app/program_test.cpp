@@ -27,6 +27,10 @@ TEST_F(Program, BuildsAMapAndTellsSoInJson) {
   EXPECT_EQ(bytes, fs::file_size(path("map.clx"))) << "every byte belongs to a layer";
   EXPECT_NE(run("info " + path("map.clx").string() + " --layers").out.find("layer scan_points"), std::string::npos);
   EXPECT_EQ(Json::parse(run("info " + path("campus").string() + " --json").out).at("scans").size(), 2U);
+  const Json clouds = Json::parse(run("info " + path("map.clx").string() + " --clouds --json").out).at("cloud_list");
+  ASSERT_FALSE(clouds.empty());
+  EXPECT_EQ(clouds[0].at("T_map_sensor")[3], Json({0.0, 0.0, 0.0, 1.0}));
+  EXPECT_NE(run("info " + path("map.clx").string() + " --clouds").out.find("sensor at "), std::string::npos);
 }
 
 TEST_F(Program, AnswersWithExitCodeZeroAndData) {

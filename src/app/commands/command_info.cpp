@@ -6,6 +6,7 @@
 #include "app/map_condition.hpp"
 #include "app/shared_options.hpp"
 #include "base/file_bytes.hpp"
+#include "base/utc_time.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/map_reader.hpp"
 #include "rdf/file/map_check.hpp"
@@ -114,6 +115,17 @@ bool isMap(const fs::path& input) {
   return input.extension() == ".clx" || rdf::looksLikeMap(input);
 }
 
+/// A pose as rows of four numbers.
+Json poseJson(const Eigen::Isometry3d& T) {
+  Json rows = Json::array();
+  for (int row = 0; row < 4; ++row) {
+    Json numbers = Json::array();
+    for (int column = 0; column < 4; ++column) numbers.push_back(T.matrix()(row, column));
+    rows.push_back(std::move(numbers));
+  }
+  return rows;
+}
+
 Json cloudsJson(const std::vector<mapping::Cloud>& clouds) {
   Json json = Json::array();
   for (const mapping::Cloud& cloud : clouds) {
@@ -122,10 +134,22 @@ Json cloudsJson(const std::vector<mapping::Cloud>& clouds) {
                {"points", cloud.point_count},
                {"has_pose", cloud.has_pose},
                {"extent_map_m", boxJson({cloud.min, cloud.max})}};
+    if (cloud.has_pose) entry["T_map_sensor"] = poseJson(cloud.T_map_sensor);
     if (cloud.time_s) entry["time_s"] = *cloud.time_s;
     json.push_back(std::move(entry));
   }
   return json;
+}
+
+void printCloud(const mapping::Cloud& cloud) {
+  const Eigen::Vector3d at = cloud.T_map_sensor.translation();
+  std::printf("  cloud %s  %llu points  %s", cloud.id.hex().c_str(), static_cast<unsigned long long>(cloud.point_count),
+              cloud.source.c_str());
+  if (cloud.has_pose)
+    std::printf("  sensor at %.2f %.2f %.2f m", at.x(), at.y(), at.z());
+  else
+    std::printf("  no pose");
+  std::printf("%s%s\n", cloud.time_s ? "  " : "", cloud.time_s ? dateTimeText(*cloud.time_s).c_str() : "");
 }
 
 Json layersJson(const std::vector<rdf::LayerSize>& layers) {
@@ -210,10 +234,7 @@ ExitCode infoOfMap(const InfoOptions& options, const fs::path& file, const Sessi
                 static_cast<unsigned long long>(summary.quads));
     for (const auto& [name, count] : summary.objects_by_class) std::printf("  %-14s %zu\n", name.c_str(), count);
     if (options.clouds)
-      for (const mapping::Cloud& cloud : map.clouds())
-        std::printf("  cloud %s  %llu points  %s%s\n", cloud.id.hex().c_str(),
-                    static_cast<unsigned long long>(cloud.point_count), cloud.source.c_str(),
-                    cloud.has_pose ? "" : "  no pose");
+      for (const mapping::Cloud& cloud : map.clouds()) printCloud(cloud);
     if (options.layers) printLayers(map.layers(), summary.points);
     if (!inputs.crs.empty()) std::printf("coordinate system: %s\n", inputs.crs.c_str());
     std::printf("built with %s\n", describeFiles(inputs).c_str());

@@ -63,6 +63,7 @@ double likelyShareDecided(const TileSet& own, const TileSet& of_lender) {
   if (decided.empty()) decided = perception::withRing(perception::grown(own), of_lender);
   const TileSet all = perception::unionOf(own, of_lender);
   for (int ring = 0; ring < kRingsDecided; ++ring) decided = perception::withRing(decided, all);
+  if (all.empty()) return 0;
   return static_cast<double>(decided.size()) / static_cast<double>(all.size());
 }
 
