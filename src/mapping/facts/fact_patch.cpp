@@ -4,8 +4,29 @@
 
 #include <algorithm>
 #include <iterator>
+#include <string>
+
+#include "rdf/vocabulary.hpp"
 
 namespace cluxel::mapping {
+
+std::vector<rdf::TermId> subjectsOfObject(const rdf::QuadReader& stored, rdf::TermId graph, rdf::TermId object) {
+  std::vector<rdf::TermId> subjects{object};
+  const std::string geo(rdf::vocabulary::kGeo), sosa(rdf::vocabulary::kSosa);
+  const auto idOf = [&](const std::string& iri) { return stored.idOf(Term::iri(iri)); };
+  rdf::QuadIds quad;
+  // A property that is not known has no facts.
+  for (const std::string& iri : {rdf::vocabulary::clx("hasPart"), geo + "hasCentroid", geo + "hasBoundingBox"})
+    if (const auto property = idOf(iri)) {
+      rdf::QuadCursor cursor = stored.scan({.s = object, .p = property, .o = {}, .g = graph});
+      while (cursor.next(quad)) subjects.push_back(quad.o);
+    }
+  if (const auto property = idOf(sosa + "hasFeatureOfInterest")) {
+    rdf::QuadCursor cursor = stored.scan({.s = {}, .p = property, .o = object, .g = graph});
+    while (cursor.next(quad)) subjects.push_back(quad.s);
+  }
+  return subjects;
+}
 
 void FactPatch::replace(std::optional<rdf::TermId> subject, std::optional<rdf::TermId> property,
                         std::optional<rdf::TermId> object) {

@@ -9,6 +9,9 @@
 
 namespace cluxel::mapping {
 
+/// The subjects of an object's facts in a graph: itself, its parts, its geometry and its observations.
+std::vector<rdf::TermId> subjectsOfObject(const rdf::QuadReader& stored, rdf::TermId graph, rdf::TermId object);
+
 class FactPatch {
  public:
   FactPatch(const rdf::QuadReader& stored, rdf::TermId graph) : stored_(stored), graph_(graph) {}

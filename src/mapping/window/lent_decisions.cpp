@@ -46,12 +46,12 @@ std::optional<std::vector<SeenCloud>> unionOfClouds(const std::vector<SeenCloud>
 
 /// The bounds of the rays of clouds that only `a` has.
 std::vector<Eigen::AlignedBox3d> raysOfOthers(const std::vector<SeenCloud>& a, const std::vector<SeenCloud>& b) {
-  std::vector<SeenCloud> common;
   std::set<ContentHash> of_b;
   for (const SeenCloud& cloud : b) of_b.insert(cloud.id);
-  std::copy_if(a.begin(), a.end(), std::back_inserter(common),
-               [&](const SeenCloud& cloud) { return of_b.contains(cloud.id); });
-  return changedRays(common, a);
+  std::vector<Eigen::AlignedBox3d> boxes;
+  for (const SeenCloud& cloud : a)
+    if (!of_b.contains(cloud.id)) boxes.push_back(cloud.rays);
+  return boxes;
 }
 
 /// The share of all tiles that is likely to be decided anew: those of both maps, or where there are none those beside

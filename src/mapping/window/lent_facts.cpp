@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "mapping/facts/fact_patch.hpp"
 #include "mapping/facts/way_facts.hpp"
 #include "rdf/map_iris.hpp"
 #include "rdf/vocabulary.hpp"
@@ -71,23 +72,11 @@ rdf::TermId LentFacts::idOf(const std::string& iri) const {
   return lender_.idOf(Term::iri(iri)).value_or(rdf::kNoTerm);
 }
 
-/// The subjects of an object's facts: itself, its parts, its geometry and its observations.
 void LentFacts::leaveOut(const ContentHash& object, Ids& subjects) const {
-  const TermId subject = idOf(rdf::iriOfObject(object));
-  if (subject == rdf::kNoTerm) return;
-  subjects.insert(subject);
-  const std::string geo(vocabulary::kGeo);
-  QuadIds quad;
-  for (const std::string& property : {vocabulary::clx("hasPart"), geo + "hasCentroid", geo + "hasBoundingBox"}) {
-    const TermId id = idOf(property);
-    if (id == rdf::kNoTerm) continue;  // in a pattern it would stand for any
-    rdf::QuadCursor cursor = lender_.scan({.s = subject, .p = id, .o = {}, .g = graph_});
-    while (cursor.next(quad)) subjects.insert(quad.o);
-  }
-  const TermId of_object = idOf(std::string(vocabulary::kSosa) + "hasFeatureOfInterest");
-  if (of_object == rdf::kNoTerm) return;
-  rdf::QuadCursor cursor = lender_.scan({.s = {}, .p = of_object, .o = subject, .g = graph_});
-  while (cursor.next(quad)) subjects.insert(quad.s);
+  const TermId id = idOf(rdf::iriOfObject(object));
+  if (id == rdf::kNoTerm) return;  // in a pattern it would stand for any
+  const std::vector<TermId> of_object = subjectsOfObject(lender_, graph_, id);
+  subjects.insert(of_object.begin(), of_object.end());
 }
 
 bool LentFacts::isOfWay(TermId subject) {

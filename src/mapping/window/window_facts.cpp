@@ -91,16 +91,8 @@ class FactWriting {
     }
   }
 
-  /// The subjects of an object's facts: itself, its parts, its geometry and its observations.
   std::vector<rdf::TermId> subjectsOf(const ContentHash& object) {
-    const rdf::TermId subject = iri(rdf::iriOfObject(object));
-    std::vector<rdf::TermId> subjects{subject};
-    const std::string geo(rdf::vocabulary::kGeo), sosa(rdf::vocabulary::kSosa);
-    for (const std::string& property : {std::string("hasPart"), geo + "hasCentroid", geo + "hasBoundingBox"})
-      for (const rdf::TermId node : patch_.objectsOf(subject, facts_.property(property))) subjects.push_back(node);
-    for (const rdf::TermId node : patch_.subjectsOf(facts_.property(sosa + "hasFeatureOfInterest"), subject))
-      subjects.push_back(node);
-    return subjects;
+    return subjectsOfObject(stored_, graph_, iri(rdf::iriOfObject(object)));
   }
 
   void forgetObject(const ContentHash& object) {

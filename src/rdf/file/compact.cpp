@@ -115,7 +115,7 @@ void copyAll(const ReadTransaction& from, Environment& to) {
   transaction.commit();
 }
 
-/// A file that is removed unless it is kept.
+/// A new map file. In the end its lock file is removed, and the map, too, unless it is to be kept.
 class MadeFile {
  public:
   explicit MadeFile(const fs::path& file) : file_(file) {}
