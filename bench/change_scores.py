@@ -16,7 +16,8 @@ States. For each object of the truth the reported object, or changed part of an 
 0.2) gives the state in the last visit: present, absent or not observed. In the truth an object is not observed when the
 visit measures, or would measure, no point on it, and of no certain state below 20 points.
 A changed part speaks for an object of the truth when they overlap by half. Bushes that were cut have a row of their own.
-Lamps that were replaced are left out: another pole stands in the same place.
+Lamps that were replaced are left out: another pole stands in the same place. Things behind a van ("hidden") count as all
+others do, and are listed once more.
 Of the objects that are not observed, those are counted that a report says to be gone: as a state, or as a change that
 matches their box.
 
@@ -99,6 +100,8 @@ def true_events(folder):
     """Events that both visits could see, and those that one of them could not."""
     clear, unclear = [], []
     for row in csv.DictReader(open(f"{folder}/events.csv")):
+        if row["event"] == "hidden":
+            continue
         sides = []
         if row["xmin"]:
             sides.append(("gone", box_of(row), row["instance"], ""))
@@ -129,8 +132,9 @@ def score_events(changes, folder, listing):
     return {"true": len(left), "pieces": len(pieces), "false": len(false), "missed": len(clear) - len(right), "unclear": len(unclear)}
 
 
-def score_states(changes, seen, boxes, present, cut):
-    """The table of states, and how many unobserved objects a report says to be gone."""
+def score_states(changes, seen, boxes, present, cut, hidden):
+    """The table of states, and how many unobserved objects a report says to be gone. Things that a van hides have rows
+    of their own, too."""
     wholes, parts = (
         [(s["class"], (s["box_m"]["min"], s["box_m"]["max"]), s["after"]) for s in changes.get(key, [])]
         for key in ("states", "parts")
@@ -153,7 +157,8 @@ def score_states(changes, seen, boxes, present, cut):
         if truth == "not observed":
             is_gone = any(overlap(other, box) >= 0.2 or (overlap(other, box) > 0 and holds_centre(other, box)) for other in gone)
             vanished += 1 if is_gone or best[2] == "absent" else 0
-        table[truth, best[2]] = table.get((truth, best[2]), 0) + 1
+        for row in (truth, truth + " behind a van")[: 2 if instance in hidden else 1]:
+            table[row, best[2]] = table.get((row, best[2]), 0) + 1
     return table, vanished
 
 
@@ -161,6 +166,8 @@ def dynamic_instances(folder):
     """By visit (0: earlier scans): instances with dynamic points, those of them whose event counts, and those left out."""
     dynamic, counting, left_out = (set(), set()), (set(), set()), set()
     for row in csv.DictReader(open(f"{folder}/events.csv")):
+        if row["event"] == "hidden":
+            continue
         for visit, prefix in ((0, ""), (1, "new_")):
             if not row[prefix + "xmin"]:
                 continue
@@ -231,7 +238,7 @@ def sum_up(files):
     unobserved = sum(states.get(f"not observed -> {name}", 0) for name in names)
     print(f"| objects not observed; of them called gone | {unobserved}; {events['vanished']} |")
     print("\n| truth \\ reported | " + " | ".join(names) + " |\n|---|---|---|---|")
-    for truth in names + ("cut",):
+    for truth in names + ("cut",) + tuple(f"{name} behind a van" for name in names):
         print(f"| {truth} | " + " | ".join(str(states.get(f"{truth} -> {name}", 0)) for name in names) + " |")
     if points:
         print_points(points)
@@ -249,14 +256,16 @@ def main():
     for row in csv.DictReader(open(f"{folder}/instances.csv")):
         boxes[row["id"]] = box_of(row)
     events = score_events(changes, folder, "--list" in sys.argv)
-    cut = set()
+    cut, hidden = set(), set()
     for row in csv.DictReader(open(f"{folder}/events.csv")):
         if row["event"] == "cut":
             cut.add(row["instance"])
+        if row["event"] == "hidden":
+            hidden.add(row["instance"])
         if row["event"] == "replaced":
             boxes.pop(row["instance"], None)
             boxes.pop(row["new_instance"], None)
-    states, events["vanished"] = score_states(changes, seen, boxes, present, cut)
+    states, events["vanished"] = score_states(changes, seen, boxes, present, cut, hidden)
     scores = {"events": events, "states": {f"{t} -> {r}": n for (t, r), n in sorted(states.items())}}
     if "--points" in sys.argv:
         scores["points"] = score_points(changes, folder, sys.argv[sys.argv.index("--points") + 1])

@@ -48,7 +48,7 @@ TEST_F(SiteVisits, EventsExplainEveryDifference) {
   for (std::size_t visit = 1; visit < 3; ++visit) {
     std::set<std::int32_t> expected = thereOn(visit - 1);
     for (const SiteEvent& event : site->events) {
-      if (event.visit != visit || event.kind == SiteEventKind::Cut) continue;
+      if (event.visit != visit || event.kind == SiteEventKind::Cut || event.kind == SiteEventKind::Hidden) continue;
       if (event.instance >= 0) {
         EXPECT_EQ(expected.erase(event.instance), 1);
       }
@@ -63,7 +63,7 @@ TEST_F(SiteVisits, EventsExplainEveryDifference) {
 TEST_F(SiteVisits, HasEventsOfEachKind) {
   std::map<SiteEventKind, int> count;
   for (const SiteEvent& event : site->events) ++count[event.kind];
-  EXPECT_EQ(count.size(), 5);
+  EXPECT_EQ(count.size(), 6);
 }
 
 TEST_F(SiteVisits, MovesThingsToFreePlacesOfTheSameSize) {
@@ -128,6 +128,26 @@ TEST_F(SiteVisits, CutsTheUpperPart) {
     EXPECT_NEAR(event.gone.max().z(), before, 0.01);
     EXPECT_NEAR(event.gone.min().z(), after, 0.3);
   }
+}
+
+TEST_F(SiteVisits, HidesThingsByVansForOneVisit) {
+  std::size_t hidden = 0;
+  for (const SiteEvent& event : site->events) {
+    if (event.kind != SiteEventKind::Hidden) continue;
+    ++hidden;
+    EXPECT_TRUE(thereOn(event.visit - 1).contains(event.instance));
+    for (std::size_t visit = 0; visit < 3; ++visit)
+      EXPECT_EQ(thereOn(visit).contains(event.new_instance), visit == event.visit);
+    const auto& objects = site->visits[event.visit].objects;
+    const CampusObject &thing = objects[static_cast<std::size_t>(event.instance)],
+                       &van = objects[static_cast<std::size_t>(event.new_instance)];
+    EXPECT_EQ(van.traits, std::vector<std::string>{"occluder"});
+    EXPECT_TRUE(van.box.isApprox(boundsOn(event.visit, event.new_instance), 0.01));
+    EXPECT_LT(thing.box.max().z() - thing.position.z(), van.box.sizes().z());
+    const Eigen::Vector2d to_van = (van.box.center() - thing.box.center()).head<2>();
+    EXPECT_LT(to_van.norm(), 0.5 * (thing.box.sizes().head<2>().sum()) + 0.5 + 1.1);
+  }
+  EXPECT_GT(hidden, 0U);
 }
 
 TEST_F(SiteVisits, LaterVisitsMayHaveFewerStops) {

@@ -6,6 +6,7 @@
 
 #include <fstream>
 #include <map>
+#include <set>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -62,6 +63,37 @@ TEST(VisitTruth, StatesThePointsThatScansMeasure) {
   EXPECT_LT(total, 1.1 * stated);
   EXPECT_GE(unseen, 5U);
   EXPECT_GE(seen, 20U);
+}
+
+/// The points that the second visit measures on things that its vans hide, by instance.
+std::map<std::int32_t, std::size_t> pointsOnHiddenThings(const VisitedSite& site,
+                                                         const std::set<std::int32_t>& hidden) {
+  std::map<std::int32_t, std::size_t> points;
+  for (const SimulatedScan& scan : test::scanAll(site.visits[1]))
+    for (const std::int32_t instance : scan.truth.instance)
+      if (hidden.contains(instance)) ++points[instance];
+  return points;
+}
+
+TEST(VisitTruth, VansHideWhatStandsBehindThem) {
+  CampusParams params = test::smallCampus(41);
+  params.size_m = 100;
+  params.stops = 12;
+  VisitedSite site = visitSite(buildCampus(params), 2);
+  std::set<std::int32_t> hidden, vans;
+  for (const SiteEvent& event : site.events)
+    if (event.kind == SiteEventKind::Hidden) hidden.insert(event.instance), vans.insert(event.new_instance);
+  ASSERT_GE(hidden.size(), 3U);
+  const auto sumOf = [](const std::map<std::int32_t, std::size_t>& points) {
+    std::size_t sum = 0;
+    for (const auto& [instance, count] : points) sum += count;
+    return sum;
+  };
+  const std::size_t behind_vans = sumOf(pointsOnHiddenThings(site, hidden));
+  std::erase_if(site.visits[1].meshes, [&](const CampusMesh& mesh) { return vans.contains(mesh.instance); });
+  const std::size_t in_the_open = sumOf(pointsOnHiddenThings(site, hidden));
+  EXPECT_GT(in_the_open, 200U);
+  EXPECT_LT(behind_vans, in_the_open / 3);
 }
 
 }  // namespace

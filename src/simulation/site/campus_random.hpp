@@ -49,7 +49,8 @@ enum class RandomUse : std::uint64_t {
   Ray,
   Drift,
   Visit,
-  District
+  District,
+  Occluder
 };
 
 inline CampusRandom streamOf(std::uint64_t seed, RandomUse use, std::uint64_t number = 0) {

@@ -7,9 +7,11 @@
 #include <numbers>
 #include <optional>
 #include <set>
+#include <utility>
 
 #include "simulation/site/campus_random.hpp"
 #include "simulation/site/campus_site.hpp"
+#include "simulation/site/occluders.hpp"
 
 namespace cluxel::simulation {
 
@@ -21,6 +23,9 @@ using Eigen::AlignedBox3d, Eigen::Vector2d, Eigen::Vector3d, Eigen::Vector3f;
 struct Chances {
   double arrives_later = 0, leaves = 0, moves = 0, is_replaced = 0, is_cut = 0;
 };
+
+/// The chance that a van stands before a thing that can be hidden.
+constexpr double kIsHidden = 0.2;
 
 bool isOf(const CampusObject& object, ObjectClass object_class) {
   return object.class_number == static_cast<int>(object_class);
@@ -71,6 +76,7 @@ class Visits {
     Campus next = site_.visits.back();
     next.params.seed = mixedBits(seed_ + visit);  // other noise than on the visits before
     const std::size_t known = next.objects.size();
+    for (const std::int32_t van : std::exchange(vans_, {})) leave(next, van, visit);
     for (std::size_t i = 0; i < known; ++i) {
       const auto instance = static_cast<std::int32_t>(i);
       if (arrivalOf(instance) == visit)
@@ -78,6 +84,7 @@ class Visits {
       else if (isThere(next, instance))
         change(next, instance, visit);
     }
+    hideThings(next, visit);
     next.stops = stopsOf(base, visit);
     site_.visits.push_back(std::move(next));
   }
@@ -220,6 +227,25 @@ class Visits {
     site_.events.push_back({SiteEventKind::Cut, visit, instance, instance, gone, {}});
   }
 
+  /// Vans stand before some of the things of the visit before, whether they are still there or not. They leave before
+  /// the next visit.
+  void hideThings(Campus& next, std::size_t visit) {
+    const std::size_t known = site_.visits.back().objects.size();
+    for (std::size_t i = 0; i < known; ++i) {
+      const auto instance = static_cast<std::int32_t>(i);
+      const CampusObject hidden = next.objects[i];
+      if (!canBeHidden(hidden) || !isThere(site_.visits.back(), instance)) continue;
+      CampusRandom random{seed_, static_cast<std::uint64_t>(RandomUse::Occluder), visit, i};
+      if (!random.chance(kIsHidden)) continue;
+      const auto T_map_van = placeOfVan(next, hidden);
+      if (!T_map_van) continue;
+      const std::int32_t van = addVan(next, *T_map_van, random);
+      vans_.push_back(van);
+      site_.events.push_back({SiteEventKind::Arrived, visit, -1, van, {}, {}});
+      site_.events.push_back({SiteEventKind::Hidden, visit, instance, van, {}, {}});
+    }
+  }
+
   /// The stops of a later visit lie half a stop farther along the route, up to half a metre aside. With fewer of them,
   /// each stands in the middle of an equal share of the route.
   std::vector<Eigen::Isometry3d> stopsOf(const Campus& base, std::size_t visit) const {
@@ -244,13 +270,14 @@ class Visits {
   const Terrain& terrain_;
   std::vector<std::size_t> arrival_;  ///< the first visit that finds the object
   std::set<std::int32_t> cut_;
+  std::vector<std::int32_t> vans_;  ///< that hide things on the newest visit
   VisitedSite site_;
 };
 
 }  // namespace
 
 std::string_view nameOf(SiteEventKind kind) {
-  constexpr std::array<std::string_view, 5> kNames{"left", "arrived", "moved", "replaced", "cut"};
+  constexpr std::array<std::string_view, 6> kNames{"left", "arrived", "moved", "replaced", "cut", "hidden"};
   return kNames[static_cast<std::size_t>(kind)];
 }
 

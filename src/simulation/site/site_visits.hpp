@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Later visits to a campus: cars leave, arrive and move, signs are removed, lamps replaced, hedges cut.
+// Later visits to a campus: cars leave, arrive and move, signs are removed, lamps replaced, hedges cut, vans hide
+// things.
 #pragma once
 
 #include <cstddef>
@@ -11,15 +12,17 @@
 
 namespace cluxel::simulation {
 
-enum class SiteEventKind { Left, Arrived, Moved, Replaced, Cut };
+/// A van that hides something arrives, too. What is hidden may have left since the visit before.
+enum class SiteEventKind { Left, Arrived, Moved, Replaced, Cut, Hidden };
 std::string_view nameOf(SiteEventKind kind);  ///< "left"
 
 /// One difference between a visit and the one before.
 struct SiteEvent {
   SiteEventKind kind = SiteEventKind::Left;
-  std::size_t visit = 0;           ///< the first visit that finds the difference; the first visit of all is 0
-  std::int32_t instance = -1;      ///< the object concerned, before; -1 when it arrived
-  std::int32_t new_instance = -1;  ///< the object afterwards: what arrived, or is there after a move or a replacement
+  std::size_t visit = 0;       ///< the first visit that finds the difference; the first visit of all is 0
+  std::int32_t instance = -1;  ///< the object concerned, before; -1 when it arrived
+  std::int32_t new_instance =
+      -1;  ///< the object afterwards: what arrived, is there after a move or a replacement, or hides it
   /// Where the difference is, when it is not the whole object [m, map]: what was cut off; of lamps that were replaced
   /// all from the head of the lower one upwards.
   Eigen::AlignedBox3d gone, come;
