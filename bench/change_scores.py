@@ -19,7 +19,7 @@ A changed part speaks for an object of the truth when they overlap by half. Bush
 Lamps that were replaced are left out: another pole stands in the same place. Things behind a van ("hidden") count as all
 others do, and are listed once more.
 Of the objects that are not observed, those are counted that a report says to be gone: as a state, or as a change that
-matches their box.
+matches their box and no true event.
 
 Points (`changes --points`), as the DynamicMap benchmark counts them. A point of an earlier scan is dynamic when its
 object leaves or moves later, a point of a later scan when its object has arrived or moved. Static accuracy is the share
@@ -115,11 +115,13 @@ def true_events(folder):
 
 
 def score_events(changes, folder, listing):
+    """The counts, and the boxes of what is reported to be gone and matches no true event."""
     reported = reported_events(changes)
     clear, unclear = true_events(folder)
     left, right = match(reported, clear)
     rest = [event for i, event in enumerate(reported) if i not in left]
-    rest = [event for i, event in enumerate(rest) if i not in match(rest, unclear)[0]]
+    of_unclear = match(rest, unclear)[0]
+    rest = [event for i, event in enumerate(rest) if i not in of_unclear]
     true = clear + unclear
     pieces = [e for e in rest if any(e[0] == other[0] and lies_within(e[1], other[1]) for other in true)]
     false = [event for event in rest if event not in pieces]
@@ -129,17 +131,17 @@ def score_events(changes, folder, listing):
         for j, event in enumerate(clear):
             if j not in right:
                 print("missed", event, file=sys.stderr)
-    return {"true": len(left), "pieces": len(pieces), "false": len(false), "missed": len(clear) - len(right), "unclear": len(unclear)}
+    scores = {"true": len(left), "pieces": len(pieces), "false": len(false), "missed": len(clear) - len(right), "unclear": len(unclear)}
+    return scores, [box for kind, box, _ in rest if kind == "gone"]
 
 
-def score_states(changes, seen, boxes, present, cut, hidden):
+def score_states(changes, gone, seen, boxes, present, cut, hidden):
     """The table of states, and how many unobserved objects a report says to be gone. Things that a van hides have rows
     of their own, too."""
     wholes, parts = (
         [(s["class"], (s["box_m"]["min"], s["box_m"]["max"]), s["after"]) for s in changes.get(key, [])]
         for key in ("states", "parts")
     )
-    gone = [box for kind, box, _ in reported_events(changes) if kind == "gone"]
     table, vanished = {}, 0
     for instance, box in boxes.items():
         if (instance, "1") not in seen:
@@ -255,7 +257,7 @@ def main():
         seen[key], present[key] = int(row["points"]), row["present"] == "1"
     for row in csv.DictReader(open(f"{folder}/instances.csv")):
         boxes[row["id"]] = box_of(row)
-    events = score_events(changes, folder, "--list" in sys.argv)
+    events, gone = score_events(changes, folder, "--list" in sys.argv)
     cut, hidden = set(), set()
     for row in csv.DictReader(open(f"{folder}/events.csv")):
         if row["event"] == "cut":
@@ -265,7 +267,7 @@ def main():
         if row["event"] == "replaced":
             boxes.pop(row["instance"], None)
             boxes.pop(row["new_instance"], None)
-    states, events["vanished"] = score_states(changes, seen, boxes, present, cut, hidden)
+    states, events["vanished"] = score_states(changes, gone, seen, boxes, present, cut, hidden)
     scores = {"events": events, "states": {f"{t} -> {r}": n for (t, r), n in sorted(states.items())}}
     if "--points" in sys.argv:
         scores["points"] = score_points(changes, folder, sys.argv[sys.argv.index("--points") + 1])
