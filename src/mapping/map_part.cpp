@@ -59,8 +59,8 @@ std::optional<MapPart> partOfMap(const rdf::ReadTransaction& transaction, TileSt
   if (tiles.empty()) return std::nullopt;
   const OutputChanges none;
   FormerSummaries former(none);
-  std::optional<MapWindow> window =
-      windowAround(transaction, stages, none, former, tiles, 0, storedClouds(transaction), kMaxPartShare);
+  std::optional<MapWindow> window = windowAround(transaction, stages, none, former, storedTiles(transaction), tiles, 0,
+                                                 storedClouds(transaction), kMaxPartShare);
   if (!window) return std::nullopt;
   MapPart part;
   part.objects = objectsIn(transaction, *window);

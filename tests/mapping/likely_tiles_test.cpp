@@ -40,13 +40,16 @@ TEST(LikelyTiles, LieWithinReachOfThingsInChangedTiles) {
   storeTile(transaction, {0, 0}, {1.5F, 7, 0});
   storeTile(transaction, {1, 0}, {10.5F, 7, 0});
   const TileSet changed{{0, 0}, {1, 0}};
-  EXPECT_EQ(likelyTiles(transaction, changed, {kGround}, 1, 1), (TileSet{{0, 0}, {1, 0}, {-1, 0}}))
+  EXPECT_EQ(likelyTiles(transaction, storedTiles(transaction), changed, {kGround}, 1, 1),
+            (TileSet{{0, 0}, {1, 0}, {-1, 0}}))
       << "1.5 m away, and layers reach 1 m farther; the next is 3.5 m away";
-  EXPECT_EQ(likelyTiles(transaction, changed, {kGround}, 3, 1), (TileSet{{0, 0}, {1, 0}, {-1, 0}, {2, 0}}));
+  EXPECT_EQ(likelyTiles(transaction, storedTiles(transaction), changed, {kGround}, 3, 1),
+            (TileSet{{0, 0}, {1, 0}, {-1, 0}, {2, 0}}));
   const TileSet all{{0, 0}, {1, 0}, {2, 0}, {-1, 0}, {0, 1}, {1, 1}};
-  EXPECT_EQ(likelyTiles(transaction, changed, {kGround}, 7, 1), all);
-  EXPECT_EQ(likelyTiles(transaction, changed, {}, 2, 1), all) << "the floor counts";
-  EXPECT_EQ(likelyTiles(transaction, {{5, 5}}, {kGround}, 8, 9), TileSet{}) << "a tile without a layer";
+  EXPECT_EQ(likelyTiles(transaction, storedTiles(transaction), changed, {kGround}, 7, 1), all);
+  EXPECT_EQ(likelyTiles(transaction, storedTiles(transaction), changed, {}, 2, 1), all) << "the floor counts";
+  EXPECT_EQ(likelyTiles(transaction, storedTiles(transaction), {{5, 5}}, {kGround}, 8, 9), TileSet{})
+      << "a tile without a layer";
 }
 
 TEST(LikelyTiles, FollowThingsFromLayerToLayer) {
@@ -59,7 +62,8 @@ TEST(LikelyTiles, FollowThingsFromLayerToLayer) {
   }
   storeTiles(transaction, row);
   for (std::uint32_t layers = 1; layers < 5; ++layers)
-    EXPECT_EQ(likelyTiles(transaction, {{0, 0}}, {kGround}, 14, layers).size(), layers + 1) << layers;
+    EXPECT_EQ(likelyTiles(transaction, storedTiles(transaction), {{0, 0}}, {kGround}, 14, layers).size(), layers + 1)
+        << layers;
 }
 
 /// What is one primitive is reached as a whole.
@@ -77,7 +81,7 @@ TEST(LikelyTiles, FollowPrimitivesThroughTiles) {
     transaction.putBlock(tables::kTileLayers, tables::keyOf(layer.key), toBytes(layer));
   }
   storeTiles(transaction, row);
-  EXPECT_EQ(likelyTiles(transaction, {{0, 0}}, {kGround}, 2, 4), row);
+  EXPECT_EQ(likelyTiles(transaction, storedTiles(transaction), {{0, 0}}, {kGround}, 2, 4), row);
 }
 
 TEST(LikelyTiles, LeaveOutTheGroundByTheShippedRules) {

@@ -14,9 +14,8 @@
 #include "cluxel/error.hpp"
 #include "mapping/build/map_update.hpp"
 #include "mapping/facts/map_history.hpp"
-#include "mapping/map_tables.hpp"
+#include "mapping/map_change_fixture.hpp"
 #include "mapping/presence/stored_presence.hpp"
-#include "mapping/small_campus.hpp"
 #include "sparql/query_engine.hpp"
 
 namespace cluxel::mapping {
@@ -24,104 +23,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
-
-constexpr std::size_t kScans = 4;
-
-/// A campus of four scans, and maps of any of them with any poses, built once each.
-class MapChange : public testing::Test {
- protected:
-  static void SetUpTestSuite() {
-    campus = new SmallCampus({.seed = 5, .stops = kScans, .size_m = 45, .points_per_stop = 1200});
-    inputs = new MapInputs(shippedInputs());
-    const ScratchFolder manifest;  // gives the scans times, so that objects have a presence
-    std::ofstream text(manifest.path() / "scans.yaml");
-    text << "scans:\n";
-    for (std::size_t i = 0; i < kScans; ++i)
-      text << "  - {path: " << campus->files()[i].string() << ", time_s: " << 1600000000 + 1000 * i << "}\n";
-    text.close();
-    scans = new ScanSet(scansOf({manifest.path() / "scans.yaml"}));
-    for (std::size_t i = 0; i < scans->size(); ++i) ids.push_back(scans->load(i).id);
-  }
-  static void TearDownTestSuite() {
-    delete campus;
-    delete inputs;
-    delete scans;
-    ids.clear();
-    built.clear();
-  }
-
-  /// Scan number → pose number: 0 is the true pose, others are shifted by 0.5 m and turned by 2 degrees per number.
-  using Poses = std::map<std::size_t, int>;
-
-  static Eigen::Isometry3d poseOf(std::size_t scan, int number) {
-    Eigen::Isometry3d T = scans->file(scan).T_map_sensor;
-    if (number == 0) return T;
-    T.pretranslate(Eigen::Vector3d(0.5 * number, 0, 0));
-    T.rotate(Eigen::AngleAxisd(number * 0.035, Eigen::Vector3d::UnitZ()));
-    return T;
-  }
-  static ScanSet posed(const Poses& poses) {
-    std::vector<PosedScan> chosen;
-    for (const auto& [scan, number] : poses) chosen.push_back({scan, poseOf(scan, number)});
-    return scans->posed(chosen);
-  }
-  fs::path map() const { return folder.path() / "map.clx"; }
-  void build(const Poses& poses) const { buildMap(posed(poses), *inputs, map(), {.force = true}, silence()); }
-
-  /// The facts, and the stored outputs of the stages, whose traces cover also what is not stored.
-  struct Content {
-    std::string facts, stages;
-    bool operator==(const Content&) const = default;
-  };
-  static Content contentOf(const fs::path& file) {
-    Content content{canonicalText(file), ""};
-    const auto environment = Environment::open(file, OpenMode::ReadOnly);
-    const ReadTransaction transaction = environment->read();
-    for (const auto table :
-         {tables::kPoints, tables::kCluxels, tables::kGround, tables::kFeatures, tables::kLabels, tables::kSummaries,
-          tables::kEven, tables::kComponents, tables::kContacts, tables::kSurfaces, tables::kWays})
-      transaction.forEachBlock(
-          table, "", [&](std::string_view key, std::string_view bytes) { content.stages.append(key).append(bytes); });
-    return content;
-  }
-  static const Content& fromScratch(const Poses& poses) {
-    auto [entry, fresh] = built.try_emplace(poses);
-    if (fresh) {
-      const ScratchFolder folder;
-      buildMap(posed(poses), *inputs, folder.path() / "map.clx", {}, silence());
-      entry->second = contentOf(folder.path() / "map.clx");
-    }
-    return entry->second;
-  }
-  void expectExact(const Poses& poses) const {
-    const Content found = contentOf(map());
-    EXPECT_TRUE(found.facts == fromScratch(poses).facts);
-    EXPECT_TRUE(found.stages == fromScratch(poses).stages);
-  }
-
-  ChangeReport extend(std::size_t scan, int pose, const ChangeParams& params = {}) const {
-    return extendMap(map(), posed({{scan, pose}}), params, silence());
-  }
-  ChangeReport retract(std::size_t scan, const ChangeParams& params = {}) const {
-    return retractScans(map(), {ids[scan]}, params, silence());
-  }
-  ChangeReport move(const Poses& poses, const ChangeParams& params = {}) const {
-    std::vector<ScanPose> moves;
-    for (const auto& [scan, number] : poses) moves.push_back({ids[scan], poseOf(scan, number)});
-    return moveScans(map(), moves, params, silence());
-  }
-
-  static std::function<MapInputs(MapInputs)> always(const MapInputs& inputs) {
-    return [inputs](const MapInputs&) { return inputs; };
-  }
-
-  ScratchFolder folder;
-  inline static SmallCampus* campus = nullptr;
-  inline static MapInputs* inputs = nullptr;
-  inline static ScanSet* scans = nullptr;
-  inline static std::vector<ScanId> ids;
-  inline static std::map<Poses, Content> built;
-};
 
 TEST_F(MapChange, ExtendingOneByOneInAnyOrderGivesTheBuildFromScratch) {
   std::mt19937 random(1);
@@ -190,47 +91,6 @@ TEST_F(MapChange, ARandomSequenceOfOperationsKeepsTheMapExact) {
       there[scan] = pose;
     }
     ASSERT_TRUE(contentOf(map()) == fromScratch(there)) << "step " << step;
-  }
-}
-
-TEST_F(MapChange, OtherRulesGiveTheBuildWithTheseRules) {
-  build({{0, 0}, {1, 0}});
-  MapInputs other = *inputs;
-  std::string& text = other.rules.front().text;
-  // Patches of ground that are farther apart become objects of their own.
-  const std::pair<std::string, std::string> changes[] = {{"group: { near: 1.5 m }", "group: { near: 0.2 m }"},
-                                                         {"merge_into: class, confidence: 0.98", "confidence: 0.98"},
-                                                         {"merge_into: class, confidence: 0.80", "confidence: 0.80"}};
-  for (const auto& [before, after] : changes) {
-    ASSERT_NE(text.find(before), std::string::npos) << before;
-    text.replace(text.find(before), before.size(), after);
-  }
-  const ChangeReport report = applyInputs(map(), always(other), {}, silence());
-  EXPECT_FALSE(report.objects.isEmpty());
-  EXPECT_EQ(report.tiles_changed, 0U);
-  buildMap(posed({{0, 0}, {1, 0}}), other, folder.path() / "other.clx", {}, silence());
-  EXPECT_TRUE(canonicalText(map()) == canonicalText(folder.path() / "other.clx"));
-  applyInputs(map(), always(*inputs), {}, silence());
-  expectExact({{0, 0}, {1, 0}});
-}
-
-TEST_F(MapChange, AnotherModelGivesTheBuildWithThisModel) {
-  MapInputFiles files;
-  files.model = "campus";
-  const MapInputs other = readMapInputs(files, DataHome(test::sourceFolder()));
-  buildMap(posed({{0, 0}, {1, 0}}), other, folder.path() / "other.clx", {}, silence());
-  const Content expected = contentOf(folder.path() / "other.clx");
-  ChangeReport whole;
-  for (const std::uint64_t part_points : {100'000U, 1'000U, 1U}) {  // the map has 2400 points
-    build({{0, 0}, {1, 0}});
-    const ChangeParams params{.threads = 2, .stage_points = part_points, .max_window_share = 2};
-    const ChangeReport report = applyInputs(map(), always(other), params, silence());
-    EXPECT_TRUE(contentOf(map()) == expected) << "parts of " << part_points;
-    if (part_points > 10'000) whole = report;
-    EXPECT_EQ(report.local_commits, part_points > 10'000 ? 0U : 1U);
-    EXPECT_EQ(report.objects.added, whole.objects.added);
-    EXPECT_EQ(report.objects.gone, whole.objects.gone);
-    EXPECT_EQ(report.objects.unchanged, whole.objects.unchanged);
   }
 }
 

@@ -15,9 +15,9 @@
 #include "mapping/change/map_change.hpp"
 #include "mapping/change/map_merge.hpp"
 #include "mapping/change/statement_change.hpp"
+#include "mapping/layers/semantic_state.hpp"
 #include "mapping/map_tables.hpp"
 #include "mapping/small_campus.hpp"
-#include "mapping/window/semantic_state.hpp"
 
 namespace cluxel::mapping {
 namespace {
@@ -155,6 +155,8 @@ struct MergeCase {
   unsigned threads = 1;
   double max_window_share = 2;  ///< so that small maps are decided around the border, too
   std::size_t statements = 0;   ///< in each map
+  std::uint64_t whole_cluxels = UpdateParams{}.whole_cluxels;
+  std::size_t max_seam = MergeParams{}.max_seam;
 };
 
 /// Merges maps and compares the result with a build. Returns how many maps were taken over.
@@ -181,6 +183,8 @@ std::size_t mergeAndCompare(const Street& street, const MergeCase& what, std::mt
   params.force = true;
   params.change.threads = what.threads;
   params.change.max_window_share = what.max_window_share;
+  params.change.whole_cluxels = what.whole_cluxels;
+  params.max_seam = what.max_seam;
   const ChangeReport report = mergeMaps(maps, street.merged(), params, silence());
   EXPECT_TRUE(canonicalText(street.merged()) == canonicalText(whole));
   EXPECT_TRUE(blocksOf(street.merged()) == blocksOf(whole));
@@ -215,6 +219,15 @@ TEST(MergeOfStreets, DecidesAroundTheBorderAlone) {
   EXPECT_EQ(taken, 8U) << "all maps that were added";
 }
 
+TEST(MergeOfStreets, AddsAMapWithALongBorderScanByScan) {
+  const Street street;
+  std::set<std::size_t> west, east;
+  for (std::size_t scan = 0; scan < street.size(); ++scan) (scan < 6 ? west : east).insert(scan);
+  std::mt19937 random(3);
+  const MergeCase merge{.parts = {west, east}, .threads = 2, .statements = 2, .max_seam = 1};
+  EXPECT_EQ(mergeAndCompare(street, merge, random), 0U) << "what the other map decided is taken all the same";
+}
+
 TEST(MergeOfStreets, OfAnyPartsIsTheBuildFromAllScans) {
   const bool is_long = std::getenv("CLUXEL_LONG_TESTS") != nullptr;
   std::size_t taken = 0;
@@ -235,7 +248,9 @@ TEST(MergeOfStreets, OfAnyPartsIsTheBuildFromAllScans) {
     if (parts.size() < 2) continue;
     std::shuffle(parts.begin(), parts.end(), random);
     // Some maps turn out to need too large a window: what was taken is given up again.
-    const MergeCase merge{parts, 1 + seed % 2, seed % 4 == 0 ? 0.3 + 0.1 * static_cast<double>(below(6)) : 2, below(4)};
+    MergeCase merge{parts, 1 + seed % 2, seed % 4 == 0 ? 0.3 + 0.1 * static_cast<double>(below(6)) : 2, below(4)};
+    if (seed % 4 == 0) merge.whole_cluxels = 100U << below(12);
+    if (seed % 7 == 3) merge.max_seam = below(4);
     taken += mergeAndCompare(street, merge, random);
   }
   EXPECT_GT(taken, 0U);

@@ -73,9 +73,11 @@ class TileStages {
   perception::Scene scene(const std::vector<Cloud>& clouds) const {
     return assembleScene(outputs_, params_.relation, viewsOf(clouds));
   }
-  /// The scene of the tiles that are held. `elsewhere`: other tiles of the map next to them.
-  perception::SceneWindow window(const perception::TileSet& elsewhere, const std::vector<Cloud>& clouds) const {
-    return assembleWindow(outputs_, elsewhere, params_.relation, viewsOf(clouds));
+  /// The scene of the tiles that are held. `elsewhere`: other tiles of the map next to them; `unseen`: those that do
+  /// not count.
+  perception::SceneWindow window(const perception::TileSet& elsewhere, const perception::TileSet& unseen,
+                                 const std::vector<Cloud>& clouds) const {
+    return assembleWindow(outputs_, elsewhere, unseen, params_.relation, viewsOf(clouds));
   }
   /// The cluxels of the tiles that are held, without their primitives.
   perception::SceneCluxels heldCluxels(const perception::TileSet& elsewhere) const {

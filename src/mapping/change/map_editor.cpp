@@ -14,10 +14,11 @@
 #include "mapping/build/stage_clock.hpp"
 #include "mapping/change/map_things.hpp"
 #include "mapping/facts/map_history.hpp"
+#include "mapping/layers/semantic_state.hpp"
 #include "mapping/map_state.hpp"
+#include "mapping/map_strips.hpp"
 #include "mapping/map_tables.hpp"
 #include "mapping/window/former_objects.hpp"
-#include "mapping/window/semantic_state.hpp"
 #include "rules/decide/local_reach.hpp"
 
 namespace cluxel::mapping {
@@ -51,19 +52,12 @@ bool endsInTiles(const MapInputs& before, const MapInputs& after) {
   return with_new_tiles.hash() == after.hash();
 }
 
-/// The tiles from one end of the longer side of their area to the other.
-std::vector<TileKey> alongTheLongerSide(const TileSet& tiles) {
-  std::vector<TileKey> sorted(tiles.begin(), tiles.end());
-  const auto [west, east] = std::minmax_element(sorted.begin(), sorted.end(), [](auto a, auto b) { return a.x < b.x; });
-  const auto [south, north] =
-      std::minmax_element(sorted.begin(), sorted.end(), [](auto a, auto b) { return a.y < b.y; });
-  if (!sorted.empty() && north->y - south->y > east->x - west->x)
-    std::sort(sorted.begin(), sorted.end(), [](auto a, auto b) { return std::pair(a.y, a.x) < std::pair(b.y, b.x); });
-  return sorted;
-}
-
 ChangedInputs changeOf(const MapInputs& before, const MapInputs& after) {
   MapInputs with_new_rules = before;
+  with_new_rules.sparql_rules = after.sparql_rules;
+  if (rules::haveSameClasses(classCatalogueOf(before.ontology), classCatalogueOf(after.ontology)))
+    with_new_rules.ontology = after.ontology;
+  if (with_new_rules.hash() == after.hash()) return ChangedInputs::Inference;
   with_new_rules.rules = after.rules;
   with_new_rules.rule_roots = after.rule_roots;
   return with_new_rules.hash() == after.hash() ? ChangedInputs::Rules : ChangedInputs::Any;
@@ -91,7 +85,8 @@ void MapEditor::setInputs(ParsedInputs inputs) {
   // What was given before may need more.
   ends_in_tiles_ = changed_inputs_ == ChangedInputs::Scans && endsInTiles(parsed_.inputs, inputs.inputs);
   if (parsed_.inputs.hash() != inputs.inputs.hash())
-    changed_inputs_ = std::max(changed_inputs_, changeOf(parsed_.inputs, inputs.inputs));
+    changed_inputs_ =
+        std::max(changed_inputs_, inputs.rules.asks_map ? ChangedInputs::Any : changeOf(parsed_.inputs, inputs.inputs));
   stages_.reset();
   parsed_ = std::move(inputs);
 }
@@ -123,26 +118,15 @@ void MapEditor::update(rdf::WriteTransaction& transaction, PointChanges changes,
 }
 
 std::vector<TileSet> MapEditor::partsOfAll(const rdf::ReadTransaction& transaction, const TileSet& more) const {
-  std::uint64_t points = 0, bytes = 0;
+  std::uint64_t points = 0;
   for (const Cloud& cloud : storedClouds(transaction)) points += cloud.point_count;
   const std::uint64_t part_points = std::max<std::uint64_t>(1, partSize(points, points, params_.stage_points));
-  const double count = std::ceil(static_cast<double>(points) / static_cast<double>(part_points));
+  const std::uint64_t count = (points + part_points - 1) / part_points;
   // The bytes of its points tell what a tile costs.
-  std::map<TileKey, std::uint64_t> bytes_of;
-  const TileSet tiles = unionOf(TileSet(more), storedTiles(transaction));
-  for (const TileKey& tile : tiles) {
+  return stripsOf(unionOf(TileSet(more), storedTiles(transaction)), count, [&](const TileKey& tile) {
     const auto block = transaction.block(tables::kPoints, tables::keyOf(tile));
-    bytes += bytes_of[tile] = block ? block->size() : 0;
-  }
-  std::vector<TileSet> parts(1);
-  std::uint64_t of_part = 0;
-  for (const TileKey& tile : alongTheLongerSide(tiles)) {
-    if (of_part > 0 && static_cast<double>(of_part) * count >= static_cast<double>(bytes))
-      parts.emplace_back(), of_part = 0;
-    parts.back().insert(tile);
-    of_part += bytes_of.at(tile);
-  }
-  return parts;
+    return block ? block->size() : 0;
+  });
 }
 
 SemanticUpdate MapEditor::decide(rdf::WriteTransaction& transaction, PointChanges changes, ProgressSink& sink) {
@@ -153,7 +137,7 @@ SemanticUpdate MapEditor::decide(rdf::WriteTransaction& transaction, PointChange
       return decideInParts(transaction, std::move(parts), sink);
   }
   update(transaction, std::move(changes), sink);
-  return updateSemanticLayer(transaction, parsed_, *stages_, inputs, {params_.threads, params_.max_window_share}, sink);
+  return updateSemanticLayer(transaction, parsed_, *stages_, inputs, layerParams(), sink);
 }
 
 /// After each part the map follows from the outputs that its tiles have then. So only what follows from the part has to
@@ -174,7 +158,7 @@ SemanticUpdate MapEditor::decideInParts(rdf::WriteTransaction& transaction, std:
       continue;
     }
     update = updateSemanticLayer(transaction, parsed_, *stages_, is_local ? ChangedInputs::Scans : ChangedInputs::Any,
-                                 {params_.threads, params_.max_window_share}, sink);
+                                 layerParams(), sink);
     stages_->dropAll();
     difference.add(std::move(update.before), std::move(update.after));
     is_local = is_local && update.is_local;

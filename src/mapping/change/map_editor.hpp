@@ -27,7 +27,8 @@ struct ChangeParams {
   bool dry_run = false;                       ///< compute what would change, and write nothing
   std::uint64_t stage_points = kStagePoints;  ///< of a batch, as many go through the stages at once
   bool may_compact = true;                    ///< rewrite the map when the change leaves much free space
-  double max_window_share = UpdateParams{}.max_window_share;  ///< as in UpdateParams
+  double max_window_share = UpdateParams{}.max_window_share;  ///< this and the next as in UpdateParams
+  std::uint64_t whole_cluxels = UpdateParams{}.whole_cluxels;
 };
 
 struct ChangeReport {
@@ -93,6 +94,7 @@ class MapEditor {
   void note(SemanticUpdate update);
   void report(const rdf::ReadTransaction& transaction, const SemanticUpdate& update);
   void noteStatements() const;
+  UpdateParams layerParams() const { return {params_.threads, params_.max_window_share, params_.whole_cluxels}; }
 
   std::filesystem::path file_;
   std::optional<BuildLock> lock_;

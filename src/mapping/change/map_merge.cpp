@@ -272,7 +272,8 @@ class Merge {
     const bool is_large = points > params_.change.batch_points || points > readers_[base_].summary().points / 8;
     return is_large && isAlike(number) && own.map_origin == inputs.map_origin && own.crs == inputs.crs &&
            differencesOf(own, inputs).empty() &&
-           canLendDecisions(additions.transaction(), readers_[number].transaction(), params_.change.max_window_share);
+           canLendDecisions(additions.transaction(), readers_[number].transaction(), params_.change.max_window_share,
+                            params_.max_seam);
   }
 
   /// Copies the scans and tiles of a map that fits into one batch. Of others the scans are added one by one.

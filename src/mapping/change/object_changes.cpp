@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstring>
 #include <iterator>
+#include <set>
 
 #include "mapping/change/common_members.hpp"
 
@@ -138,6 +139,14 @@ std::vector<ObjectMembers> ObjectDifference::before() const {
 
 std::vector<ObjectMembers> ObjectDifference::after() const {
   return valuesOf(fresh_);
+}
+
+void keepDifferent(std::vector<ObjectMembers>& before, std::vector<ObjectMembers>& after) {
+  std::set<ContentHash> ids_before, ids_after;
+  for (const ObjectMembers& object : before) ids_before.insert(object.id);
+  for (const ObjectMembers& object : after) ids_after.insert(object.id);
+  std::erase_if(before, [&](const ObjectMembers& object) { return ids_after.contains(object.id); });
+  std::erase_if(after, [&](const ObjectMembers& object) { return ids_before.contains(object.id); });
 }
 
 }  // namespace cluxel::mapping

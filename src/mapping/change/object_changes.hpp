@@ -64,4 +64,7 @@ class ObjectDifference {
   std::map<ContentHash, ObjectMembers> gone_, fresh_;
 };
 
+/// Leaves out what is in both lists; both are sorted by id.
+void keepDifferent(std::vector<ObjectMembers>& before, std::vector<ObjectMembers>& after);
+
 }  // namespace cluxel::mapping

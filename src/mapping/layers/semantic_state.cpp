@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // One block of numbers.
-#include "mapping/window/semantic_state.hpp"
+#include "mapping/layers/semantic_state.hpp"
 
 #include <algorithm>
 #include <array>
@@ -88,6 +88,12 @@ std::vector<SeenCloud> seenClouds(const std::vector<Cloud>& clouds) {
     seen.push_back({cloud.id, contentOf(cloud), cloud.time_s, cloud.has_pose, cloud.rays});
   std::sort(seen.begin(), seen.end(), [](const SeenCloud& a, const SeenCloud& b) { return a.id < b.id; });
   return seen;
+}
+
+bool areSame(const std::vector<SeenCloud>& a, const std::vector<SeenCloud>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const SeenCloud& left, const SeenCloud& right) {
+    return left.id == right.id && left.content == right.content && left.time_s == right.time_s;
+  });
 }
 
 bool tellsPresence(const std::vector<SeenCloud>& clouds) {

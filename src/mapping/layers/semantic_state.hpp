@@ -21,6 +21,9 @@ struct SeenCloud {
   Eigen::AlignedBox3d rays;  ///< as in Cloud
 };
 
+/// Whether lists, each ascending by id, name the same clouds with the same poses and times.
+bool areSame(const std::vector<SeenCloud>& a, const std::vector<SeenCloud>& b);
+
 struct SemanticState {
   std::uint64_t cluxels = 0, primitives = 0, objects = 0;
   std::vector<ContentHash> statements;  ///< of operators, ascending by id

@@ -64,15 +64,18 @@ void FormerObjects::add(const TileLayer& layer, const std::function<bool(const C
   if (const perception::SummaryTile* summary = summaryOf(layer.key)) members_.add(layer, *summary, is_wanted);
 }
 
-std::vector<ObjectMembers> formerObjects(const rdf::ReadTransaction& transaction, const TileStages& stages,
-                                         const OutputChanges& changes) {
-  FormerSummaries summaries(changes);
-  FormerObjects former(transaction, stages, summaries);
-  transaction.forEachBlock(tables::kTileLayers, "", [&](std::string_view /*key*/, std::string_view bytes) {
-    former.add(tileLayerFromBytes(bytes), [](const ContentHash&) { return true; });
-    summaries.drop();
+std::vector<ObjectMembers> formerObjects(const rdf::ReadTransaction& transaction, const OutputChanges& changes) {
+  MemberLists members(transaction);
+  forEachStoredLayer(transaction, [&](const TileLayer& layer) {
+    const auto changed = changes.former_summaries.find(layer.key);
+    if (changed != changes.former_summaries.end() && !changed->second) return;
+    const auto summary = changed != changes.former_summaries.end()
+                             ? std::optional<std::string_view>(*changed->second)
+                             : transaction.block(tables::kSummaries, tables::keyOf(layer.key));
+    if (!summary) refuseMissingBlock();
+    members.add(layer, perception::seedsFromBytes(*summary), [](const ContentHash&) { return true; });
   });
-  return former.take();
+  return members.take();
 }
 
 }  // namespace cluxel::mapping

@@ -51,8 +51,7 @@ class FormerObjects {
   MemberLists members_;
 };
 
-/// All objects of the map before the change.
-std::vector<ObjectMembers> formerObjects(const rdf::ReadTransaction& transaction, const TileStages& stages,
-                                         const OutputChanges& changes);
+/// All objects of the map before the change, while its layers are not written yet. Memory: 8 bytes a cluxel.
+std::vector<ObjectMembers> formerObjects(const rdf::ReadTransaction& transaction, const OutputChanges& changes);
 
 }  // namespace cluxel::mapping

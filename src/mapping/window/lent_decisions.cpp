@@ -54,6 +54,11 @@ std::vector<Eigen::AlignedBox3d> raysOfOthers(const std::vector<SeenCloud>& a, c
   return boxes;
 }
 
+/// The tiles of both maps, and those of the lender beside tiles of the map.
+TileSet seamOf(const TileSet& own, const TileSet& of_lender) {
+  return perception::withRing(own, of_lender);
+}
+
 /// The share of all tiles that is likely to be decided anew: those of both maps, or where there are none those beside
 /// the other map, with some rings around.
 double likelyShareDecided(const TileSet& own, const TileSet& of_lender) {
@@ -84,9 +89,12 @@ void copyBlock(rdf::WriteTransaction& into, const rdf::ReadTransaction& from, st
 
 }  // namespace
 
-bool canLendDecisions(const rdf::ReadTransaction& map, const rdf::ReadTransaction& lender, double max_share) {
+bool canLendDecisions(const rdf::ReadTransaction& map, const rdf::ReadTransaction& lender, double max_share,
+                      std::size_t max_seam) {
   const std::optional<SemanticState> own = storedSemanticState(map), other = storedSemanticState(lender);
-  if (!own || !other || likelyShareDecided(storedTiles(map), storedTiles(lender)) > max_share) return false;
+  const TileSet tiles = storedTiles(map), of_lender = storedTiles(lender);
+  if (!own || !other || seamOf(tiles, of_lender).size() > max_seam || likelyShareDecided(tiles, of_lender) > max_share)
+    return false;
   const auto clouds = unionOfClouds(own->clouds, other->clouds);
   if (!clouds || tellsPresence(own->clouds) != tellsPresence(*clouds) ||
       tellsPresence(other->clouds) != tellsPresence(*clouds))
@@ -100,7 +108,7 @@ LentDecisions::LentDecisions(rdf::WriteTransaction& transaction, const rdf::Read
     if (transaction.block(tables::kTileLayers, tables::keyOf(tile))) own_.insert(tile);
   const TileSet of_lender = storedTiles(lender);
   for (const TileKey& tile : of_lender) (own_.contains(tile) ? common_ : lent_).insert(tile);
-  seam_ = perception::unionOf(perception::withRing(own_, lent_), common_);
+  seam_ = seamOf(own_, of_lender);
   own_state_ = storedSemanticState(transaction).value();
   state_of_lender_ = storedSemanticState(lender).value();
   const std::vector<SeenCloud>&of_own = own_state_.clouds, &of_other = state_of_lender_.clouds;

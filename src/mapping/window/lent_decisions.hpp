@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "mapping/build/tile_stages.hpp"
+#include "mapping/layers/semantic_state.hpp"
 #include "mapping/window/lent_facts.hpp"
-#include "mapping/window/semantic_state.hpp"
 #include "mapping/window/window_decision.hpp"
 #include "rdf/file/environment.hpp"
 
@@ -18,8 +18,10 @@ namespace cluxel::mapping {
 
 /// Whether a map may take over what `lender`, a map of the same inputs and frame, decided: objects of a whole class are
 /// ground only, scans of both have the same pose and time, and facts about presence are told in both or in none. False
-/// also where more than `max_share` of all tiles are likely to be decided anew.
-bool canLendDecisions(const rdf::ReadTransaction& map, const rdf::ReadTransaction& lender, double max_share);
+/// also where more than `max_share` of all tiles are likely to be decided anew, and where the maps meet in more than
+/// `max_seam` tiles: a seam goes through the stages and is decided at once.
+bool canLendDecisions(const rdf::ReadTransaction& map, const rdf::ReadTransaction& lender, double max_share,
+                      std::size_t max_seam);
 
 /// Lends layers, records, margins, ways and facts of the tiles that only the lender had. With them the map is what two
 /// maps side by side are: what lies within reach of both is to be decided anew.

@@ -48,11 +48,9 @@ std::vector<Part> partsIn(const TileLayer& layer, const std::set<ContentHash>& b
 /// Layers (rules::layersAround()), as far as the stored layers of tiles tell them.
 class LayerSearch {
  public:
-  LayerSearch(const rdf::ReadTransaction& transaction, const std::set<ContentHash>& lone_objects, double reach_m)
-      : transaction_(transaction),
-        lone_objects_(lone_objects),
-        reach_m_(reach_m + kSlack_m),
-        map_(storedTiles(transaction)) {}
+  LayerSearch(const rdf::ReadTransaction& transaction, TileSet map, const std::set<ContentHash>& lone_objects,
+              double reach_m)
+      : transaction_(transaction), lone_objects_(lone_objects), reach_m_(reach_m + kSlack_m), map_(std::move(map)) {}
 
   /// Everything in some tiles is layer 0.
   void beginWith(const TileSet& tiles) {
@@ -135,9 +133,9 @@ std::set<ContentHash> objectsOfLoneSeeds(const rules::RuleSet& rules) {
   return objects;
 }
 
-TileSet likelyTiles(const rdf::ReadTransaction& transaction, const TileSet& changed,
+TileSet likelyTiles(const rdf::ReadTransaction& transaction, const TileSet& map, const TileSet& changed,
                     const std::set<ContentHash>& lone_objects, double reach_m, std::uint32_t layers) {
-  LayerSearch search(transaction, lone_objects, reach_m);
+  LayerSearch search(transaction, map, lone_objects, reach_m);
   search.beginWith(changed);
   return search.tilesOfFirst(layers);
 }
@@ -145,7 +143,7 @@ TileSet likelyTiles(const rdf::ReadTransaction& transaction, const TileSet& chan
 TileSet tilesAround(const rdf::ReadTransaction& transaction, const std::set<ContentHash>& primitives,
                     const TileSet& tiles, const std::set<ContentHash>& lone_objects, double reach_m,
                     std::uint32_t layers) {
-  LayerSearch search(transaction, lone_objects, reach_m);
+  LayerSearch search(transaction, storedTiles(transaction), lone_objects, reach_m);
   search.beginWith(primitives, tiles);
   return perception::unionOf(search.tilesOfFirst(layers), tiles);
 }

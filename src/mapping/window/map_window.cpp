@@ -36,14 +36,14 @@ WindowTiles tilesAround(const TileSet& changed, const TileSet& more, int rings, 
   return tiles;
 }
 
-/// False when the map lacks the layer of a tile that was there before the change.
+/// False when the map lacks the layer of a tile that was there before the change. Tiles that had no summary then are
+/// new, and have no layer that counts.
 bool readLayers(const rdf::ReadTransaction& transaction, const OutputChanges& changes, MapWindow& window) {
   for (const TileKey& tile : window.tiles) {
-    std::optional<TileLayer> layer = storedLayer(transaction, tile);
     const auto changed = changes.former_summaries.find(tile);
-    const bool is_new = changed != changes.former_summaries.end() && !changed->second;
-    if (!layer && !is_new) return false;
-    if (!layer) continue;
+    if (changed != changes.former_summaries.end() && !changed->second) continue;
+    std::optional<TileLayer> layer = storedLayer(transaction, tile);
+    if (!layer) return false;
     for (const TileLayer::PrimitiveHere& primitive : layer->primitives)
       window.known.emplace(primitive.id, KnownPrimitive{primitive.input, primitive.trace});
     window.layers.emplace(tile, std::move(*layer));
@@ -92,18 +92,19 @@ const perception::SummaryTile* FormerSummaries::of(const TileKey& tile) {
 }
 
 std::optional<MapWindow> windowAround(const rdf::ReadTransaction& transaction, TileStages& stages,
-                                      const OutputChanges& changes, FormerSummaries& former, const TileSet& more,
-                                      int rings, const std::vector<Cloud>& clouds, double max_share) {
-  const TileSet map = storedTiles(transaction);
+                                      const OutputChanges& changes, FormerSummaries& former, const TileSet& map,
+                                      const TileSet& more, int rings, const std::vector<Cloud>& clouds,
+                                      double max_share) {
   WindowTiles tiles = tilesAround(changes.tiles, more, rings, map);
   if (static_cast<double>(tiles.held.size()) > max_share * static_cast<double>(map.size())) return std::nullopt;
   MapWindow window;
   window.tiles = perception::unionOf(tiles.held, changes.tiles);
   window.elsewhere = std::move(tiles.elsewhere);
   if (!readLayers(transaction, changes, window)) return std::nullopt;
-  stages.hold(transaction, tiles.held, window.elsewhere);
+  const TileSet around = without(perception::withRing(tiles.held, storedTiles(transaction)), tiles.held);
+  stages.hold(transaction, tiles.held, around);
   requireFit(tiles.held, stages, changes, former, window.layers);
-  perception::SceneWindow scene = stages.window(window.elsewhere, clouds);
+  perception::SceneWindow scene = stages.window(window.elsewhere, without(around, window.elsewhere), clouds);
   window.scene = std::move(scene.scene);
   window.is_cut = std::move(scene.is_cut);
   std::uint32_t first = 0;

@@ -62,12 +62,13 @@ class FormerSummaries {
   std::map<perception::TileKey, perception::SummaryTile> read_;
 };
 
-/// The window of the tiles `rings` around the changed ones and of `more`. Absent when it would hold more than
-/// `max_share` of the map's tiles, or when the map lacks layers: then the whole map is computed.
+/// The window of the tiles `rings` around the changed ones and of `more`. `map`: the tiles that count; what leads to
+/// others is left out. Absent when the window would hold more than `max_share` of them, or when the map lacks layers:
+/// then the whole map is computed.
 std::optional<MapWindow> windowAround(const rdf::ReadTransaction& transaction, TileStages& stages,
                                       const OutputChanges& changes, FormerSummaries& former,
-                                      const perception::TileSet& more, int rings, const std::vector<Cloud>& clouds,
-                                      double max_share);
+                                      const perception::TileSet& map, const perception::TileSet& more, int rings,
+                                      const std::vector<Cloud>& clouds, double max_share);
 
 /// For each cluxel of the window's scene its number in the layer of its tile before the change; kNoFormer for new ones.
 inline constexpr std::uint32_t kNoFormer = 0xFFFFFFFFU;

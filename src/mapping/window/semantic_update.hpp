@@ -28,15 +28,18 @@ GoesOn keptBy(const rdf::ReadTransaction& transaction, const SemanticUpdate& upd
 
 /// What may have changed since the layers were made.
 enum class ChangedInputs : std::uint8_t {
-  Scans,  ///< scans, poses and statements
-  Rules,  ///< and the rules that decide about objects
-  Any,    ///< SPARQL rules, ontology, model or settings too
+  Scans,      ///< scans, poses and statements
+  Inference,  ///< only SPARQL rules, and the ontology in what rules do not see: not its classes and their parts
+  Rules,      ///< all these, and the rules that decide about objects
+  Any,        ///< classes, model or settings too
 };
 
 struct UpdateParams {
   unsigned threads = 1;  ///< the result is the same for every number
   /// Of the tiles: what is expected to need a larger window is computed over the whole map. 2: nothing is.
   double max_window_share = 0.6;
+  /// A map of more cluxels, of which all is to be decided, is decided strip by strip.
+  std::uint64_t whole_cluxels = 1'500'000;
 };
 
 /// Takes the changes of `stages`. Stores everything but inputs and history.

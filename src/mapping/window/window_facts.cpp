@@ -83,6 +83,7 @@ class FactWriting {
       patch_.replace(subject);
     };
     for (const ContentHash& id : sources_.decided.change.gone) forget(id);
+    for (const ContentHash& id : sources_.retired.primitives) forget(id);
     for (const PrimitiveIndex i : primitivesByPlace(scene_)) {
       if (sources_.decided.change.is_dirty[i] == 0 || sources_.decided.decision.is_decided[i] == 0) continue;
       forget(scene_.primitives[i].id);
@@ -102,6 +103,7 @@ class FactWriting {
 
   void replaceObjects() {
     for (const auto& [id, record] : sources_.decided.decision.replaced) forgetObject(id);
+    for (const ContentHash& id : sources_.retired.objects) forgetObject(id);
     const WindowPresence presence = updatePresenceIn(transaction_, sources_, made_);
     const std::vector<std::vector<ContentHash>> near = nearOfMade();
     rules::ReasoningResult result;
@@ -186,7 +188,8 @@ class FactWriting {
 
   std::vector<rdf::TermId> exchangedPrimitives() {
     std::vector<rdf::TermId> exchanged;
-    for (const ContentHash& id : sources_.decided.change.gone) exchanged.push_back(iri(rdf::iriOfPrimitive(id)));
+    for (const std::set<ContentHash>* gone : {&sources_.decided.change.gone, &sources_.retired.primitives})
+      for (const ContentHash& id : *gone) exchanged.push_back(iri(rdf::iriOfPrimitive(id)));
     for (PrimitiveIndex i = 0; i < scene_.primitives.size(); ++i)
       if (sources_.decided.decision.is_decided[i] != 0)
         exchanged.push_back(iri(rdf::iriOfPrimitive(scene_.primitives[i].id)));

@@ -9,13 +9,18 @@
 #include "cluxel/progress.hpp"
 #include "mapping/cloud.hpp"
 #include "mapping/facts/semantic_layer.hpp"
+#include "mapping/layers/semantic_state.hpp"
 #include "mapping/window/map_window.hpp"
-#include "mapping/window/semantic_state.hpp"
 #include "mapping/window/window_change.hpp"
 #include "mapping/window/window_decision.hpp"
 #include "mapping/window/window_statements.hpp"
 
 namespace cluxel::mapping {
+
+/// Things of a map that are decided anew as a whole: what they are now is told elsewhere.
+struct RetiredThings {
+  std::set<ContentHash> objects, primitives;
+};
 
 /// What the facts around a change follow from.
 struct WindowFacts {
@@ -25,6 +30,7 @@ struct WindowFacts {
   const std::vector<SeenCloud>& clouds_before;
   const DecidedWindow& decided;
   const WindowStatements& statements;
+  const RetiredThings& retired;               ///< of which no fact stays that is not told again
   const WayGraph* ways = nullptr;             ///< null when they are as before
   const std::set<std::string>& more_patches;  ///< of the ground (IRIs) that nothing may touch any more
   unsigned threads = 1;

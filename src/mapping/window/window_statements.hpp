@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "mapping/facts/semantic_layer.hpp"
+#include "mapping/layers/semantic_state.hpp"
 #include "mapping/statements/overruled_objects.hpp"
 #include "mapping/statements/statement_places.hpp"
 #include "mapping/window/map_window.hpp"
-#include "mapping/window/semantic_state.hpp"
 #include "mapping/window/window_change.hpp"
 #include "mapping/window/window_decision.hpp"
 

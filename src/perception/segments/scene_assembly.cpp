@@ -42,19 +42,19 @@ struct JoinedComponents {
   std::vector<std::uint32_t> cut;           ///< components that go on in a tile that is not held
 };
 
-JoinedComponents joinComponents(const TileOutputs& tiles, const TileNumbering& components, const TileSet& elsewhere) {
+/// `apart`: tiles that are not held; what goes on in those of `elsewhere` is cut.
+JoinedComponents joinComponents(const TileOutputs& tiles, const TileNumbering& components, const TileSet& apart,
+                                const TileSet& elsewhere) {
   JoinedComponents joined;
   DisjointSets sets(components.total());
   for (const auto& [key, tile] : tiles.contacts) {
     const auto ring = ringOf(key);
-    const auto is_elsewhere = ringAmong(elsewhere, key);
+    const auto is_apart = ringAmong(apart, key), is_elsewhere = ringAmong(elsewhere, key);
     for (const Contact& contact : tile.contacts) {
       if (contact.linked_edges == 0) continue;
       const std::uint32_t from = components.of(key) + contact.from;
-      if (is_elsewhere[contact.to_ring])
-        joined.cut.push_back(from);
-      else
-        sets.join(from, components.of(ring[contact.to_ring]) + contact.to);
+      if (is_elsewhere[contact.to_ring]) joined.cut.push_back(from);
+      if (!is_apart[contact.to_ring]) sets.join(from, components.of(ring[contact.to_ring]) + contact.to);
     }
   }
   joined.primitive_of = sets.numbers();
@@ -282,16 +282,17 @@ SceneSeeds seedsOf(const TileOutputs& tiles) {
   return seeds;
 }
 
-SceneWindow assembleWindow(const TileOutputs& tiles, const TileSet& elsewhere, const RelationParams& params,
-                           std::vector<SceneView> views) {
-  checkFit(tiles, elsewhere);
+SceneWindow assembleWindow(const TileOutputs& tiles, const TileSet& elsewhere, const TileSet& unseen,
+                           const RelationParams& params, std::vector<SceneView> views) {
+  const TileSet apart = unionOf(elsewhere, unseen);
+  checkFit(tiles, apart);
   SceneWindow window;
   Scene& scene = window.scene;
   std::sort(views.begin(), views.end(), [](const SceneView& a, const SceneView& b) { return a.scan < b.scan; });
   scene.views = std::move(views);
-  scene.cluxels = gatherCluxels(tiles, elsewhere);
+  scene.cluxels = gatherCluxels(tiles, apart);
   const TileNumbering components(tiles.components);
-  JoinedComponents joined = joinComponents(tiles, components, elsewhere);
+  JoinedComponents joined = joinComponents(tiles, components, apart, elsewhere);
   std::vector<std::uint32_t>& primitive_of = joined.primitive_of;
   const auto last = std::max_element(primitive_of.begin(), primitive_of.end());
   fillPrimitives(tiles, primitive_of, last == primitive_of.end() ? 0 : *last + 1, scene);
@@ -302,13 +303,13 @@ SceneWindow assembleWindow(const TileOutputs& tiles, const TileSet& elsewhere, c
   scene.cluxels.primitive.resize(scene.cluxels.size());
   for (PrimitiveIndex i = 0; i < scene.primitives.size(); ++i)
     for (const std::uint32_t cluxel : scene.primitives[i].cluxels) scene.cluxels.primitive[cluxel] = i;
-  appendRelations(mergeContacts(tiles, components, primitive_of, elsewhere), params, scene);
+  appendRelations(mergeContacts(tiles, components, primitive_of, apart), params, scene);
   indexRelations(scene);
   return window;
 }
 
 Scene assembleScene(const TileOutputs& tiles, const RelationParams& params, std::vector<SceneView> views) {
-  return assembleWindow(tiles, {}, params, std::move(views)).scene;
+  return assembleWindow(tiles, {}, {}, params, std::move(views)).scene;
 }
 
 }  // namespace cluxel::perception

@@ -44,6 +44,17 @@ std::vector<std::string> ClassCatalogue::partsOf(std::string_view iri) const {
   return {parts.begin(), parts.end()};
 }
 
+bool haveSameClasses(ClassCatalogue a, ClassCatalogue b) {
+  for (ClassCatalogue* catalogue : {&a, &b}) {
+    for (ClassEntry& entry : catalogue->classes) {
+      std::sort(entry.superclasses.begin(), entry.superclasses.end());
+      std::sort(entry.parts.begin(), entry.parts.end());
+    }
+    std::sort(catalogue->classes.begin(), catalogue->classes.end());
+  }
+  return a.classes == b.classes;
+}
+
 ClassCatalogue catalogueOf(const rdf::OntologyView& ontology) {
   ClassCatalogue catalogue;
   for (const rdf::OntologyClass& known : ontology.classes)

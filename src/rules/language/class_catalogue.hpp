@@ -17,6 +17,7 @@ struct ClassEntry {
   std::string iri;
   std::vector<std::string> superclasses;  ///< direct ones
   std::vector<std::string> parts;         ///< classes its parts may have; superclasses' parts count too
+  auto operator<=>(const ClassEntry&) const = default;
 };
 
 /// The known classes, in any order.
@@ -29,6 +30,9 @@ struct ClassCatalogue {
   /// The part classes of `iri` and of its superclasses, sorted.
   std::vector<std::string> partsOf(std::string_view iri) const;
 };
+
+/// Whether two catalogues have the same classes with the same superclasses and parts, in whatever order.
+bool haveSameClasses(ClassCatalogue a, ClassCatalogue b);
 
 /// The classes of an ontology as rules see them.
 ClassCatalogue catalogueOf(const rdf::OntologyView& ontology);

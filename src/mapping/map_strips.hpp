@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// Strips of a map's tiles across the longer side of its area: what is too large to be computed at once goes strip by
+// strip, because a strip has a short border.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "perception/tile.hpp"
+
+namespace cluxel::mapping {
+
+/// All tiles in `count` strips or fewer, of about the same weight, from one end of the area to the other.
+std::vector<perception::TileSet> stripsOf(const perception::TileSet& tiles, std::size_t count,
+                                          const std::function<std::uint64_t(const perception::TileKey&)>& weight_of);
+
+}  // namespace cluxel::mapping

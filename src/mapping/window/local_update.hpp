@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// The layers above the tiles, brought up to date around a change.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "mapping/layers/semantic_state.hpp"
+#include "mapping/window/semantic_update.hpp"
+#include "mapping/window/window_facts.hpp"
+
+namespace cluxel::mapping {
+
+class LentDecisions;
+
+/// What an update of the layers works with. All must outlive it.
+struct LayerWork {
+  rdf::WriteTransaction& transaction;
+  const ParsedInputs& parsed;
+  TileStages& stages;
+  const UpdateParams& params;
+  ProgressSink& sink;
+  const rdf::InferenceCheck& check;
+};
+
+/// A map of which everything is decided anew shows its tiles strip by strip. What is not shown does not count.
+struct MapStrip {
+  perception::TileSet shown;           ///< the tiles of this strip and of those before
+  perception::TileSet anew;            ///< this strip, and what lies beside it: everything there counts as new
+  RetiredThings retired;               ///< what the map knew in the strip, and not yet anew
+  std::vector<SeenCloud> told_clouds;  ///< as the facts have them
+  rules::KnownSplits* splits = nullptr;
+};
+
+/// Decides in a window around the changed tiles and writes all that follows; of a strip (else null) all but inference
+/// and the lists of objects. `lent`: what another map decided, or null. Absent when the whole map has to be computed;
+/// then no decision was written.
+std::optional<SemanticUpdate> updateAround(const LayerWork& work, OutputChanges& changes, ChangedInputs inputs,
+                                           LentDecisions* lent, const MapStrip* strip);
+
+/// The ids of the operator's statements, ascending.
+std::vector<ContentHash> statementIds(const rdf::ReadTransaction& transaction);
+
+}  // namespace cluxel::mapping

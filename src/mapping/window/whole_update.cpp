@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: Apache-2.0
+// A map that grows by one strip after the other ends as the map of all of its tiles: each strip is decided as a change.
+#include "mapping/window/whole_update.hpp"
+
+#include <algorithm>
+#include <set>
+
+#include "mapping/build/scan_store.hpp"
+#include "mapping/layers/stored_layers.hpp"
+#include "mapping/map_strips.hpp"
+#include "mapping/map_tables.hpp"
+#include "mapping/presence/object_rows.hpp"
+#include "mapping/splits_store.hpp"
+#include "mapping/statements/statement_facts.hpp"
+#include "mapping/window/former_objects.hpp"
+#include "mapping/window/map_window.hpp"
+#include "rules/decide/local_reach.hpp"
+
+namespace cluxel::mapping {
+
+namespace {
+
+using perception::TileKey;
+using perception::TileSet;
+
+/// A strip is decided together with what lies beside it, which is often as large.
+constexpr std::uint64_t kStripsOfWhole = 2;
+
+void eraseAll(rdf::WriteTransaction& transaction, std::string_view table) {
+  std::vector<std::string> keys;
+  transaction.forEachBlock(table, "", [&](std::string_view key, std::string_view) { keys.emplace_back(key); });
+  for (const std::string& key : keys) transaction.eraseBlock(table, key);
+}
+
+/// Of the map, told by those that its former tiles had.
+std::uint64_t likelyCluxels(const rdf::ReadTransaction& transaction, const SemanticState& former) {
+  std::uint64_t tiles_before = 0;
+  transaction.forEachBlock(tables::kTileLayers, "", [&](std::string_view, std::string_view) { ++tiles_before; });
+  return former.cluxels * storedTiles(transaction).size() / std::max<std::uint64_t>(1, tiles_before);
+}
+
+class StripUpdate {
+ public:
+  StripUpdate(const LayerWork& work, SemanticState former)
+      : work_(work), transaction_(work.transaction), former_(std::move(former)), all_(storedTiles(work.transaction)) {
+    params_.max_window_share = 2;  // a window never gives way to the whole map
+  }
+
+  /// Absent when a strip cannot be decided alone. Then layers of both kinds are there, which a run over the whole map
+  /// replaces.
+  std::optional<SemanticUpdate> run() {
+    SemanticUpdate update;
+    rules::KnownSplits splits = storedSplits(transaction_);
+    MapStrip strip;
+    strip.splits = &splits;
+    begin(strip);
+    for (const TileSet& tiles : strips()) {
+      if (work_.check) work_.check(0);
+      show(tiles, strip);
+      OutputChanges changes;
+      changes.tiles = strip.anew;
+      for (const TileKey& tile : tiles) changes.former_summaries.emplace(tile, std::nullopt);
+      const LayerWork work{work_.transaction, work_.parsed, work_.stages, params_, work_.sink, work_.check};
+      const auto decided = updateAround(work, changes, ChangedInputs::Scans, nullptr, &strip);
+      if (!decided) return std::nullopt;
+      update.tiles_decided += decided->tiles_decided;
+      update.objects = decided->objects, update.cluxels = decided->cluxels, update.primitives = decided->primitives;
+      for (const TileKey& tile : tiles) notePrimitives(tile);
+      strip.retired = {}, strip.told_clouds = seenClouds(storedClouds(transaction_));
+    }
+    // Else facts about an object of a whole class, which is gone, stay.
+    if (!std::all_of(wide_.begin(), wide_.end(), [&](const auto& id) { return storedRecord(transaction_, id); }))
+      return std::nullopt;
+    eraseRowsWithoutObject(transaction_);
+    inferFacts(transaction_, work_.parsed.inputs, work_.sink, work_.check);
+    storeSplits(transaction_, splits);
+    update.statements = toldOutcomes(rdf::QuadReader(reading()));
+    return update;
+  }
+
+ private:
+  const rdf::ReadTransaction& reading() const { return transaction_; }
+
+  std::vector<TileSet> strips() const {
+    const std::uint64_t cluxels = std::max<std::uint64_t>(1, likelyCluxels(transaction_, former_));
+    const std::uint64_t of_strip = std::max<std::uint64_t>(1, work_.params.whole_cluxels / kStripsOfWhole);
+    return stripsOf(all_, (cluxels + of_strip - 1) / of_strip, [&](const TileKey& tile) {
+      const auto block = transaction_.block(tables::kSummaries, tables::keyOf(tile));
+      return block ? block->size() : 0;
+    });
+  }
+
+  /// Nothing of the map counts any more. Layers and rows stay where they are until they are written anew, because most
+  /// will be the same.
+  void begin(MapStrip& strip) {
+    strip.told_clouds = former_.clouds;
+    storeSemanticState(transaction_, {0, 0, 0, former_.statements, seenClouds(storedClouds(transaction_))});
+    for (const std::string_view table : {tables::kOverruled, tables::kStated}) eraseAll(transaction_, table);
+    forEachRecord(transaction_, [&](const ContentHash& id, const ObjectRecord& record) {
+      if (record.is_class_wide) wide_.insert(id);
+    });
+    for (const ContentHash& id : wide_) transaction_.eraseBlock(tables::kObjects, tables::keyOf(id));
+    retireTilesThatAreGone(strip);
+  }
+
+  void retireTilesThatAreGone(MapStrip& strip) {
+    std::vector<TileKey> gone;
+    forEachStoredLayer(transaction_, [&](const TileLayer& layer) {
+      if (all_.contains(layer.key)) return;
+      gone.push_back(layer.key);
+      retire(layer, strip);
+    });
+    for (const TileKey& tile : gone)
+      for (const std::string_view table : {tables::kTileLayers, tables::kMargins, tables::kWideTiles})
+        transaction_.eraseBlock(table, tables::keyOf(tile));
+  }
+
+  void show(const TileSet& tiles, MapStrip& strip) {
+    for (const TileKey& tile : tiles)
+      if (const auto layer = storedLayer(transaction_, tile)) retire(*layer, strip);
+    strip.anew = perception::withRing(tiles, perception::unionOf(strip.shown, tiles));
+    strip.shown.insert(tiles.begin(), tiles.end());
+  }
+
+  /// What has been decided anew under the same name, elsewhere, stays.
+  void retire(const TileLayer& layer, MapStrip& strip) const {
+    for (const TileLayer::PrimitiveHere& primitive : layer.primitives)
+      if (!primitives_.contains(primitive.id)) strip.retired.primitives.insert(primitive.id);
+    for (const TileLayer::Share& share : layer.shares) {
+      if (wide_.contains(share.object)) continue;
+      const auto record = storedRecord(transaction_, share.object);
+      const bool is_anew = record && std::all_of(record->tiles.begin(), record->tiles.end(),
+                                                 [&](const TileKey& tile) { return strip.shown.contains(tile); });
+      if (!is_anew) strip.retired.objects.insert(share.object);
+    }
+  }
+
+  void notePrimitives(const TileKey& tile) {
+    if (const auto layer = storedLayer(transaction_, tile))
+      for (const TileLayer::PrimitiveHere& primitive : layer->primitives) primitives_.insert(primitive.id);
+  }
+
+  const LayerWork& work_;
+  rdf::WriteTransaction& transaction_;
+  SemanticState former_;
+  TileSet all_;
+  UpdateParams params_ = work_.params;
+  std::set<ContentHash> wide_;        ///< objects of whole classes that the map had
+  std::set<ContentHash> primitives_;  ///< in tiles that are shown
+};
+
+std::optional<SemanticUpdate> updateInStrips(const LayerWork& work) {
+  const std::optional<double> reach_m = rules::localReach(work.parsed.rules).reach_m;
+  std::optional<SemanticState> former = storedSemanticState(work.transaction);
+  if (!former || !reach_m || *reach_m > perception::kTileSize_m ||
+      likelyCluxels(work.transaction, *former) <= work.params.whole_cluxels)
+    return std::nullopt;
+  writeOntology(work.transaction, work.parsed.inputs);
+  auto update = StripUpdate(work, *std::move(former)).run();
+  if (update) update->after = storedMembers(work.transaction);
+  return update;
+}
+
+SemanticUpdate updateAtOnce(const LayerWork& work) {
+  work.stages.load(work.transaction);
+  SemanticUpdate update;
+  update.tiles_decided = storedTiles(work.transaction).size();
+  SemanticLayer layer =
+      writeSemanticLayer(work.transaction, work.parsed, work.stages, work.params.threads, work.sink, work.check);
+  update.after = membersOf(layer.objects, layer.scene.cluxels);
+  update.objects = layer.objects.size();
+  update.cluxels = layer.scene.cluxels.size(), update.primitives = layer.scene.primitives.size();
+  update.statements = std::move(layer.statements);
+  storeSemanticState(work.transaction, {update.cluxels, update.primitives, update.objects,
+                                        statementIds(work.transaction), seenClouds(storedClouds(work.transaction))});
+  return update;
+}
+
+}  // namespace
+
+SemanticUpdate updateAll(const LayerWork& work, const OutputChanges& changes) {
+  std::vector<ObjectMembers> before = formerObjects(work.transaction, changes);
+  std::optional<SemanticUpdate> update = updateInStrips(work);
+  if (!update) update = updateAtOnce(work);
+  update->before = std::move(before);
+  keepDifferent(update->before, update->after);
+  return *std::move(update);
+}
+
+std::optional<SemanticUpdate> updateInference(const LayerWork& work, const OutputChanges& changes) {
+  const std::optional<SemanticState> state = storedSemanticState(work.transaction);
+  if (!state || !changes.tiles.empty() || state->statements != statementIds(work.transaction) ||
+      !areSame(state->clouds, seenClouds(storedClouds(work.transaction))))
+    return std::nullopt;
+  writeOntology(work.transaction, work.parsed.inputs);
+  inferFacts(work.transaction, work.parsed.inputs, work.sink, work.check);
+  SemanticUpdate update;
+  update.is_local = true;
+  update.objects = state->objects, update.cluxels = state->cluxels, update.primitives = state->primitives;
+  if (!state->statements.empty()) {
+    const rdf::ReadTransaction& reading = work.transaction;
+    update.statements = toldOutcomes(rdf::QuadReader(reading));
+  }
+  return update;
+}
+
+}  // namespace cluxel::mapping
