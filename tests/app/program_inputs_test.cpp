@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the program takes its data from, and what it says of maps whose build is unfinished.
+// Where the program takes its data from, and what it says of maps that are empty, unfinished, or may not be written.
 #include <fstream>
 
 #include "app/program_fixture.hpp"
@@ -102,6 +102,47 @@ TEST_F(Program, AnswersFromAnUnfinishedMapComeWithANote) {
     EXPECT_EQ(told.out, silent.out) << command;
   }
   EXPECT_EQ(run("export " + path("map.clx").string() + " --canonical").err, "") << "a finished map";
+}
+
+TEST_F(Program, AnEmptyFileIsNoMapInEveryCommandThatNeedsOne) {
+  const std::string empty = path("empty.clx").string(), map = path("map.clx").string();
+  const std::string campus = path("campus").string(), fresh = path("never.clx").string();
+  writeFile(empty, "");
+  for (const std::string& arguments : std::vector<std::string>{"info " + empty,
+                                                               "query " + empty + " -e 'ASK {}'",
+                                                               "update " + empty + " -e 'CLEAR ALL'",
+                                                               "explain " + empty + " 1234",
+                                                               "state " + empty + " --list",
+                                                               "state " + empty + " --object 1234 --label x",
+                                                               "extend " + empty + " " + campus,
+                                                               "retract " + empty + " scan_000.pcd",
+                                                               "repose " + empty + " " + campus,
+                                                               "merge " + empty + " " + map + " -o " + fresh,
+                                                               "merge " + map + " " + empty + " -o " + fresh,
+                                                               "rules apply " + empty + " --model campus",
+                                                               "rules try " + empty + " outdoor.rules.yaml",
+                                                               "evaluate " + empty + " --truth " + campus + "/truth",
+                                                               "export " + empty + " --canonical",
+                                                               "dump " + empty,
+                                                               "view " + empty + " -o " + fresh,
+                                                               "compact " + empty,
+                                                               "compact " + empty + " -o " + fresh,
+                                                               "doctor " + empty}) {
+    SCOPED_TRACE(arguments);
+    expectError(run(arguments), 5, "empty.clx: is empty, a map was expected");
+    EXPECT_EQ(fs::file_size(empty), 0U);
+    EXPECT_FALSE(fs::exists(fresh));
+  }
+}
+
+TEST_F(Program, AnEmptyFileIsFilledByWhatMakesMapsAndStores) {
+  const std::string store = path("filled_store.clx").string(), map = path("filled.clx").string();
+  for (const std::string& file : {store, map}) writeFile(file, "");
+  expectError(run("load " + store + " " + path("absent.ttl").string()), 4, "absent.ttl");
+  EXPECT_EQ(fs::file_size(store), 0U) << "after an error a store is as it was";
+  EXPECT_EQ(run("load " + store + " " + path("three.ttl").string()).code, 0);
+  EXPECT_EQ(query("filled_store.clx", "ASK { ?s ?p 3 }").out, "yes\n");
+  EXPECT_EQ(run("build " + path("campus").string() + " -o " + map).code, 0);
 }
 
 }  // namespace

@@ -19,7 +19,9 @@ using testing::HasSubstr;
 TEST_F(MapFile, RefusesWhatIsNoMapInPlainWords) {
   EXPECT_THAT(refusal(), HasSubstr("no such file"));
   std::ofstream(file_).close();
-  EXPECT_THAT(refusal(), HasSubstr("is empty"));
+  for (const OpenMode mode : {OpenMode::ReadOnly, OpenMode::ReadWrite})
+    EXPECT_THAT(refusal(mode), HasSubstr("is empty, a map was expected"));
+  EXPECT_EQ(fs::file_size(file_), 0U) << "a refusal leaves the file as it is";
   std::ofstream(file_) << std::string(100'000, 'x');
   EXPECT_THAT(refusal(), HasSubstr("not a Cluxel map"));
   std::ofstream(file_) << "short";

@@ -14,17 +14,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A store that this run has made; removed unless it is kept.
+/// A store that this run has made, perhaps of an empty file; that is as it was unless the store is kept.
 class NewStore {
  public:
-  explicit NewStore(const fs::path& file) : file_(file), is_new_(isAbsent(file)) {
-    if (is_new_) environment_ = rdf::Environment::open(file, rdf::OpenMode::Create);
+  explicit NewStore(const fs::path& file) : file_(file), is_absent_(isAbsent(file)) {
+    if (is_absent_) environment_ = rdf::Environment::open(file, rdf::OpenMode::Create);
+    if (!is_absent_ && isEmpty(file)) environment_ = rdf::Environment::open(file, rdf::OpenMode::Fill);
   }
   ~NewStore() {
-    if (!is_new_ || is_kept_) return;
+    if (!environment_ || is_kept_) return;
     environment_.reset();
     std::error_code ignored;
-    fs::remove(file_, ignored);
+    if (is_absent_)
+      fs::remove(file_, ignored);
+    else
+      fs::resize_file(file_, 0, ignored);
     fs::remove(file_.string() + "-lock", ignored);
   }
   NewStore(const NewStore&) = delete;
@@ -36,9 +40,13 @@ class NewStore {
     std::error_code ignored;
     return !fs::exists(file, ignored);
   }
+  static bool isEmpty(const fs::path& file) {
+    std::error_code ignored;
+    return fs::is_regular_file(file, ignored) && fs::file_size(file, ignored) == 0;
+  }
 
   fs::path file_;
-  bool is_new_, is_kept_ = false;
+  bool is_absent_, is_kept_ = false;
   std::shared_ptr<rdf::Environment> environment_;
 };
 

@@ -75,7 +75,7 @@ WorkFile::WorkFile(const fs::path& map, const std::string& inputs_hash, bool for
   chooseBetween(inputs_hash, force);
   const Found found = lookAt(path_);
   requireSameInputs(found, path_, inputs_hash);
-  const auto mode = found.kind == Found::Kind::Nothing ? rdf::OpenMode::Create : rdf::OpenMode::ReadWrite;
+  const auto mode = found.kind == Found::Kind::Nothing ? rdf::OpenMode::Create : rdf::OpenMode::Fill;
   environment_ = rdf::Environment::open(path_, mode);
   found_ = found.state;
 }

@@ -298,7 +298,7 @@ class Merge {
   }
 
   void replaceTarget() {
-    if (!fs::exists(target_)) return rdf::replaceMapFile(beside_, target_);
+    if (!fs::exists(target_) || fs::is_empty(target_)) return rdf::replaceMapFile(beside_, target_);
     const rdf::WriteTransaction old = rdf::writeMap(target_);
     if (!operatorStatements(rdf::QuadReader(static_cast<const rdf::ReadTransaction&>(old))).empty())
       sink_.note(target_.string() + ": is replaced; the operator statements that it had are dropped");

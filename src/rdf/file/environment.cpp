@@ -128,12 +128,12 @@ CheckedCommit checkUnderSnapshot(MDB_env* handle, int descriptor, const fs::path
 
 /// The environment of a file that LMDB has opened.
 std::shared_ptr<LmdbEnvironment> environmentOf(const fs::path& file, EnvHandle handle, Descriptor& descriptor,
-                                               const MapFileHead& head, bool can_write, bool may_initialise) {
-  const MapScope scope = may_initialise ? MapScope::Writing : MapScope::Reading;  // one walk for reading and writing
+                                               const MapFileHead& head, bool can_write, bool may_write) {
+  const MapScope scope = may_write ? MapScope::Writing : MapScope::Reading;  // one walk for reading and writing
   CheckedCommit checked;
   if (head.file_size != 0) checked = checkUnderSnapshot(handle.get(), descriptor.get(), file, scope);
   auto environment = std::make_shared<LmdbEnvironment>(file, std::move(handle), descriptor.release(), can_write);
-  if (may_initialise) environment->allowWriting();
+  if (may_write) environment->allowWriting();
   environment->noteStructure(checked.commit, scope == MapScope::Writing, std::move(checked.keys));
   environment->openTables();
   return environment;
@@ -163,9 +163,9 @@ struct Opened {
 
 /// No environment when the file was replaced while it was being opened.
 Opened openNew(const fs::path& file, Descriptor& descriptor, bool can_write, OpenMode mode, unsigned extra_flags) {
-  const bool may_initialise = mode != OpenMode::ReadOnly;
+  const bool may_write = mode != OpenMode::ReadOnly;
   const MapFileHead head = readMapFileHead(descriptor.get(), file);
-  if (head.file_size == 0 && !may_initialise)
+  if (head.file_size == 0 && mode != OpenMode::Create && mode != OpenMode::Fill)
     throw Error(ErrorKind::StoreUnavailable, file.string() + ": is empty, a map was expected");
   Access access{.can_write = can_write};
   EnvHandle handle;
@@ -175,8 +175,7 @@ Opened openNew(const fs::path& file, Descriptor& descriptor, bool can_write, Ope
     handle = openLmdbFor(file, head.file_size, mode, access, descriptor.get(), extra_flags);
   }
   if (!handle) return {openCopy(file, descriptor), false};
-  return {environmentOf(file, std::move(handle), descriptor, head, access.can_write, may_initialise),
-          !access.holds_writers};
+  return {environmentOf(file, std::move(handle), descriptor, head, access.can_write, may_write), !access.holds_writers};
 }
 
 /// The environment from the process-wide table, or a new one; none when the file was replaced meanwhile.

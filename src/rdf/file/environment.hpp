@@ -12,7 +12,8 @@
 
 namespace cluxel::rdf {
 
-enum class OpenMode { ReadOnly, ReadWrite, Create };  ///< Create: the file must not exist yet
+/// Create: the file must not exist yet. Fill: as ReadWrite, but an empty file becomes a map, which the others refuse.
+enum class OpenMode { ReadOnly, ReadWrite, Create, Fill };
 
 class ReadTransaction;
 class WriteTransaction;
