@@ -12,12 +12,17 @@
 #include <string>
 
 #include "cluxel/error.hpp"
+#include "rdf/file/lock_file.hpp"
 
 namespace cluxel::mapping {
 
 namespace fs = std::filesystem;
 
 namespace {
+
+fs::path buildLockOf(fs::path map) {
+  return map += ".build-lock";
+}
 
 [[noreturn]] void refuse(const fs::path& map, const std::string& what) {
   throw Error(ErrorKind::StoreUnavailable, map.string() + ": " + what);
@@ -36,9 +41,19 @@ bool isNamed(int descriptor, const fs::path& file) {
          mine.st_ino == there.st_ino;
 }
 
+bool isForbidden(const fs::path& path) {
+  return ::faccessat(AT_FDCWD, path.c_str(), W_OK, AT_EACCESS) != 0 &&
+         (errno == EACCES || errno == EPERM || errno == EROFS);
+}
+
 }  // namespace
 
-BuildLock::BuildLock(const fs::path& map) : file_(map.string() + ".build-lock") {
+bool mayWriteMap(const fs::path& map) {
+  return !isForbidden(fs::absolute(map).parent_path()) && !isForbidden(map) && !isForbidden(rdf::lockFileOf(map)) &&
+         !isForbidden(buildLockOf(map));
+}
+
+BuildLock::BuildLock(const fs::path& map) : file_(buildLockOf(map)) {
   while (true) {
     const int descriptor = ::open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
     if (descriptor < 0) refuse(map, std::string("no lock can be made beside it: ") + std::strerror(errno));

@@ -22,4 +22,7 @@ class BuildLock {
   int descriptor_ = -1;
 };
 
+/// False when this process has no right to write a map, its lock files, or the folder. `map` need not exist.
+bool mayWriteMap(const std::filesystem::path& map);
+
 }  // namespace cluxel::mapping

@@ -30,10 +30,17 @@ namespace {
 /// A token in the cache of a commit tells whether the commit is still the newest.
 constexpr const char* kRestToken = "rest of a map editor";
 
-std::shared_ptr<rdf::Environment> openForChange(const fs::path& file) {
+std::shared_ptr<rdf::Environment> openAs(const fs::path& file, rdf::OpenMode mode) {
   if (!fs::exists(file))
     throw Error(ErrorKind::StoreUnavailable, file.string() + ": there is no such map; build it first");
-  return rdf::Environment::open(file, rdf::OpenMode::ReadWrite);
+  return rdf::Environment::open(file, mode);
+}
+std::shared_ptr<rdf::Environment> openForChange(const fs::path& file) {
+  return openAs(file, rdf::OpenMode::ReadWrite);
+}
+
+bool worksOnCopy(const fs::path& file, const ChangeParams& params) {
+  return params.dry_run && fs::exists(file) && !mayWriteMap(file);
 }
 
 bool reachTiles(const MapInputs& before, const MapInputs& after) {
@@ -65,8 +72,29 @@ ChangedInputs changeOf(const MapInputs& before, const MapInputs& after) {
 
 }  // namespace
 
+void requireChangeable(const fs::path& file, const ChangeParams& params) {
+  const fs::path target = withoutLinks(file);
+  const auto environment = openAs(target, rdf::OpenMode::ReadOnly);
+  std::optional<BuildLock> lock;  // that a build is running is told before that it is unfinished
+  if (!worksOnCopy(target, params)) lock.emplace(target);
+  requireFinishedInputs(environment->read(), file);
+}
+
+std::string noteOfCopy(const fs::path& file) {
+  return file.string() + ": you may not write it or its folder; the dry run works on a copy in " +
+         fs::temp_directory_path().string();
+}
+
 MapEditor::MapEditor(const fs::path& file, const ChangeParams& params, ProgressSink& sink)
-    : file_(withoutLinks(file)), lock_(file_), environment_(openForChange(file_)), params_(params), sink_(sink) {
+    : file_(withoutLinks(file)), params_(params), sink_(sink) {
+  if (worksOnCopy(file_, params)) {
+    requireChangeable(file, params);  // before the map is copied
+    sink.note(noteOfCopy(file));
+    environment_ = rdf::Environment::temporaryCopyOf(file_);
+  } else {
+    lock_.emplace(file_);
+    environment_ = openForChange(file_);
+  }
   parsed_ = parseInputs(requireFinishedInputs(environment_->read(), file));
   inputs_hash_ = parsed_.inputs.hash().hex();
   readBefore(environment_->read());

@@ -47,10 +47,17 @@ struct ChangeReport {
   rdf::FreeSpace free_space;                 ///< of the map afterwards
 };
 
+/// Throws the Errors of MapEditor, before anything else is read. Cost: reads the inputs of the map.
+void requireChangeable(const std::filesystem::path& file, const ChangeParams& params);
+
+/// What a user is told when a dry run works on a copy.
+std::string noteOfCopy(const std::filesystem::path& file);
+
 class MapEditor {
  public:
-  /// Takes the build lock and reads the inputs. Throws Error: InvalidArgument for an unfinished map or one that another
-  /// version of the stages has made, StoreUnavailable when the file cannot be written or is being written.
+  /// Takes the build lock and reads the inputs. A dry run of a map that this process may not write works on a temporary
+  /// copy. Throws Error: InvalidArgument for an unfinished map or one that another version of the stages has made,
+  /// StoreUnavailable when the file cannot be written or is being written.
   MapEditor(const std::filesystem::path& file, const ChangeParams& params, ProgressSink& sink);
 
   const ParsedInputs& inputs() const { return parsed_; }

@@ -19,6 +19,7 @@
 #include "mapping/statements/statement_history.hpp"
 #include "mapping/window/former_objects.hpp"
 #include "mapping/window/lent_decisions.hpp"
+#include "rdf/file/file_guards.hpp"
 #include "rdf/file/map_replacement.hpp"
 #include "rdf/map_iris.hpp"
 
@@ -58,9 +59,15 @@ class Merge {
       : maps_(maps),
         target_(withoutLinks(target)),
         beside_(target_.string() + ".merging"),
-        lock_(target_),
         params_(params),
-        sink_(sink) {}
+        sink_(sink) {
+    if (!params.change.dry_run || mayWriteMap(target_)) {
+      lock_.emplace(target_);
+      return;
+    }
+    temporary_.emplace();
+    beside_ = temporary_->path() / beside_.filename();
+  }
 
   Merge(const Merge&) = delete;
   Merge& operator=(const Merge&) = delete;
@@ -74,6 +81,7 @@ class Merge {
     base_ = largest();
     if (fs::exists(target_) && !params_.force) return reportOfMerged();
     removeBeside();
+    if (temporary_) sink_.note(noteOfCopy(target_));
     rdf::Environment::open(maps_[base_].file, rdf::OpenMode::ReadOnly)->compactTo(beside_, rdf::CopiedPages::AsTheyAre);
     ChangeReport report = addOthers();
     if (!params_.change.dry_run) replaceTarget();
@@ -313,7 +321,8 @@ class Merge {
 
   const std::vector<MapToMerge>& maps_;
   fs::path target_, beside_;
-  BuildLock lock_;
+  std::optional<BuildLock> lock_;
+  std::optional<rdf::TemporaryFolder> temporary_;  ///< of a dry run that may not write beside the target
   const MergeParams& params_;
   ProgressSink& sink_;
   std::vector<MapReader> readers_;

@@ -32,7 +32,8 @@ struct MergeParams {
 /// when it is complete; a killed merge leaves TARGET.merging, which the next one removes. Without `force` a target that
 /// is the merge of these maps already, their history included, is left as it is, with a note. Throws Error
 /// (InvalidArgument) for any other file there, and when inputs, map origin or coordinate system differ, a scan has two
-/// poses, or a file is named twice. With `dry_run` the work is done on a copy beside TARGET, which is removed.
+/// poses, or a file is named twice. With `dry_run` the work is done on a copy beside TARGET, or in the folder
+/// for temporary files when nothing may be written there; it is removed.
 ChangeReport mergeMaps(const std::vector<MapToMerge>& maps, const std::filesystem::path& target,
                        const MergeParams& params, ProgressSink& sink);
 

@@ -229,6 +229,16 @@ std::shared_ptr<Environment> Environment::temporary() {
   return environment;
 }
 
+std::shared_ptr<Environment> Environment::temporaryCopyOf(const fs::path& file) {
+  const TemporaryFolder folder;
+  if (folder.path().empty()) failStore(fs::temp_directory_path(), errno, "make a temporary map");
+  const fs::path copy = folder.path() / file.filename();
+  open(file, OpenMode::ReadOnly)->compactTo(copy, CopiedPages::AsTheyAre);
+  auto environment = openOnce(copy, OpenMode::ReadWrite, MDB_NOSYNC);
+  environment->loseName();
+  return environment;
+}
+
 LmdbEnvironment::LmdbEnvironment(fs::path file, EnvHandle handle, int data_lock, bool can_write)
     : file_(std::move(file)),
       handle_(std::move(handle)),
