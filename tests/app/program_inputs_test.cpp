@@ -104,6 +104,18 @@ TEST_F(Program, AnswersFromAnUnfinishedMapComeWithANote) {
   EXPECT_EQ(run("export " + path("map.clx").string() + " --canonical").err, "") << "a finished map";
 }
 
+TEST_F(Program, ThatAMapIsUnfinishedIsToldBeforeFaultsOfTheOtherArguments) {
+  const std::string map = path("cut_again.clx").string();
+  unfinishedMap();  // makes the cut campus
+  ASSERT_EQ(run("build " + path("cut_campus").string() + " -o " + map + " --batch-points 1").code, 4);
+  for (const std::string& arguments :
+       {"extend " + map + " absent-input", "repose " + map + " absent-input", "retract " + map + " scan_999.pcd",
+        "state " + map + " --object nn --label x", "rules apply " + map + " --rules absent-input"}) {
+    SCOPED_TRACE(arguments);
+    expectError(run(arguments), 2, "its build is unfinished");
+  }
+}
+
 TEST_F(Program, AnEmptyFileIsNoMapInEveryCommandThatNeedsOne) {
   const std::string empty = path("empty.clx").string(), map = path("map.clx").string();
   const std::string campus = path("campus").string(), fresh = path("never.clx").string();

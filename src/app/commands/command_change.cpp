@@ -26,6 +26,7 @@ struct ChangeOptions {
 };
 
 ExitCode extend(const ChangeOptions& options, Session& session) {
+  mapping::requireChangeable(options.map, options.change);
   for (const fs::path& input : options.inputs)
     if (std::error_code ignored; fs::is_regular_file(input, ignored) && rdf::looksLikeMap(input))
       throw Error(ErrorKind::InvalidArgument, input.string() + ": is a map, not a scan", Remedy::MergeMaps);
@@ -37,6 +38,7 @@ ExitCode extend(const ChangeOptions& options, Session& session) {
 }
 
 ExitCode retract(const ChangeOptions& options, Session& session) {
+  mapping::requireChangeable(options.map, options.change);
   mapping::ChangeParams params = options.change;
   params.threads = session.threadCount();
   const auto clouds = mapping::cloudsNamed(options.map, options.clouds, mapping::Retracted::Named);
@@ -65,6 +67,7 @@ std::vector<mapping::ScanPose> posesOf(const scan::ScanSet& scans, const fs::pat
 }
 
 ExitCode repose(const ChangeOptions& options, Session& session) {
+  mapping::requireChangeable(options.map, options.change);
   const scan::ScanSet scans = scan::ScanSet::open(options.inputs, options.scans.params(), session.console);
   mapping::ChangeParams params = options.change;
   params.threads = session.threadCount();

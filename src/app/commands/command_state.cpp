@@ -120,6 +120,7 @@ void addAboutObject(const mapping::MapReader& map, const StateOptions& options, 
 }
 
 ExitCode change(const StateOptions& options, Session& session) {
+  mapping::requireChangeable(options.map, options.change);
   mapping::StatementEdit edit;
   edit.author = authorOr(options.author);
   {
