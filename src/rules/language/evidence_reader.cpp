@@ -31,7 +31,9 @@ class EvidenceReader {
     if (kinds != 1) return faults_.error(node_.at, "a line of evidence has one of 'curve', 'about' and 'when'");
     if (when != nullptr) return readTest(*when);
     countMeasures();
-    if (auto measure = readMeasure(node_, scope_, reading_)) line_.measure = std::move(*measure);
+    auto measure = readMeasure(node_, scope_, reading_);
+    if (!measure) return;  // the dimension of the other values is not known
+    line_.measure = std::move(*measure);
     curve != nullptr ? readCurve(*curve) : readBell(*about);
   }
 

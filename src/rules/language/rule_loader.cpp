@@ -180,7 +180,9 @@ void warnOfUnused(const GatheredRules& gathered, const RuleReading& reading, con
     if (!constant.used) faults.warning(constant.at, "the constant '" + name + "' is not used");
 }
 
-void checkTogether(const GatheredRules& gathered, const RuleReading& reading, const RuleSet& rules, FaultList& faults) {
+/// `faulty`: rules of which some part was not read.
+void checkTogether(const GatheredRules& gathered, const RuleReading& reading, const RuleSet& rules,
+                   const std::set<std::string>& faulty, FaultList& faults) {
   std::set<std::string> with_rules;
   for (const Rule& rule : rules.rules) {
     with_rules.insert(rule.class_iri);
@@ -192,7 +194,7 @@ void checkTogether(const GatheredRules& gathered, const RuleReading& reading, co
                    "add it to 'order'");
     checkEvidence(rule.evidence, rule, rules, faults);
     checkNodes(rule, rules, faults);
-    if (!rule.nodes.empty()) checkMerges(rule, 0, false, faults);
+    if (!rule.nodes.empty() && !faulty.contains(rule.id)) checkMerges(rule, 0, false, faults);
   }
   if (faults.errorCount() == 0) warnOfUnused(gathered, reading, with_rules, faults);
 }
@@ -212,11 +214,15 @@ LoadedRules load(const std::vector<std::string>& roots, const FindSource& findSo
   rules.catalogue = catalogue;
   readOrder(gathered, reading, rules);
   readNothing(gathered, reading, rules);
+  std::set<std::string> faulty;
   for (const YamlNode& node : gathered.rules) {
-    const std::size_t faults_before = faults.errorCount();
+    const std::size_t faults_before = faults.errorCount() + reading.unread;
     auto rule = readRule(node, reading);
     if (!rule) continue;
-    if (faults.errorCount() == faults_before) checkReachability(*rule, faults);
+    if (faults.errorCount() + reading.unread == faults_before)
+      checkReachability(*rule, faults);
+    else
+      faulty.insert(rule->id);
     rules.rules.push_back(std::move(*rule));
   }
   if (rules.rules.empty() && faults.errorCount() == 0) {
@@ -226,7 +232,7 @@ LoadedRules load(const std::vector<std::string>& roots, const FindSource& findSo
   }
   rules.asks_map = reading.asks_map;
   markRivals(rules, faults);
-  checkTogether(gathered, reading, rules, faults);
+  checkTogether(gathered, reading, rules, faulty, faults);
   rules.sources = std::move(gathered.sources);
   numberThresholds(rules);
   LoadedRules loaded;

@@ -53,9 +53,10 @@ std::optional<GroupSpec> readGroup(const YamlNode& node, const SeedSpec& seed, R
   group.vertical_m = readLength(node, "vertical", reading);
   if (const YamlNode* adjacent = node.find("adjacent"))
     group.adjacent = readFlag(*adjacent, reading.faults).value_or(false);
-  if (group.horizontal_m.has_value() != group.vertical_m.has_value())
+  const bool has_horizontal = node.find("horizontal") != nullptr;
+  if (has_horizontal != (node.find("vertical") != nullptr))
     reading.faults.error(node.at, "'horizontal' and 'vertical' belong together");
-  if (!group.near_m && !group.horizontal_m && !group.adjacent)
+  if (node.find("near") == nullptr && !has_horizontal && !group.adjacent)
     reading.faults.error(node.at, "'group' does not say what is linked",
                          "give near, adjacent, or horizontal and vertical");
   if (const YamlNode* limits = node.find("limits"))

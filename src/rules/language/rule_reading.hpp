@@ -4,6 +4,7 @@
 
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -16,7 +17,8 @@ struct RuleConstant {
   Quantity quantity;
   SourceLocation at;
   bool used = false;
-  bool faulty = false;  ///< its definition is faulty and was reported
+  bool faulty = false;                              ///< its definition is faulty and was reported
+  std::set<perception::Dimension> misused_as = {};  ///< where it was reported not to fit
 };
 
 struct RuleReading {
@@ -25,7 +27,8 @@ struct RuleReading {
   FaultList& faults;
   std::map<std::string, std::string> prefixes = {};
   std::map<std::string, RuleConstant> constants = {};
-  bool asks_map = false;  ///< an `ask:` was read
+  bool asks_map = false;   ///< an `ask:` was read
+  std::size_t unread = 0;  ///< values that are missing because of what was reported elsewhere
 };
 
 /// The names that a condition may use, and the default subject.
@@ -50,7 +53,7 @@ std::optional<std::string> readText(const YamlNode& node, std::string_view what,
 std::optional<bool> readFlag(const YamlNode& node, FaultList& faults);
 /// A quantity such as "2.5 m" of any dimension.
 std::optional<Quantity> parseQuantity(const YamlNode& node, FaultList& faults);
-/// A quantity or $constant of the expected dimension.
+/// A quantity or $constant of the expected dimension. What is wrong with a constant is reported once.
 std::optional<Quantity> readQuantity(const YamlNode& node, perception::Dimension expected, RuleReading& reading);
 /// The labels of `label:` or `label_in:`; empty without either.
 std::vector<scan::PrimitiveLabel> readLabels(const YamlNode& map, RuleReading& reading);

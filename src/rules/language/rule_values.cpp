@@ -72,6 +72,41 @@ bool isWord(const std::string& text) {
          std::all_of(text.begin(), text.end(), [](char c) { return isAsciiAlphanumeric(c) || c == '_'; });
 }
 
+RuleConstant* constantNamed(const YamlNode& node, RuleReading& reading) {
+  const std::string name = node.text.substr(1);
+  const auto constant = reading.constants.find(name);
+  if (constant == reading.constants.end()) {
+    std::vector<std::string> names;
+    for (const auto& [known, unused] : reading.constants) names.push_back(known);
+    reading.faults.error(node.at, "unknown constant '" + node.text + "'", suggestion(name, names));
+    return nullptr;
+  }
+  constant->second.used = true;
+  return &constant->second;
+}
+
+bool isShare(const Quantity& quantity) {
+  return quantity.text.ends_with('%');
+}
+
+bool fits(const Quantity& quantity, perception::Dimension expected) {
+  if (expected == perception::Dimension::Count && isShare(quantity)) return false;
+  return quantity.dimension == expected || (isPlain(quantity.dimension) && isPlain(expected));
+}
+
+/// `where`: the place of a bare number that is not at the node; `hint`: of what has a unit.
+void reportMisfit(const YamlNode& node, const Quantity& quantity, perception::Dimension expected,
+                  const std::string& where, const std::string& hint, FaultList& faults) {
+  const std::string name = "'" + node.text + "' is ", wanted = std::string(nounOf(expected)) + " is expected";
+  if (expected == perception::Dimension::Count && isShare(quantity))
+    return faults.error(node.at, name + "a share where a number of things is expected", hint);
+  if (!isPlain(quantity.dimension))
+    return faults.error(node.at, name + std::string(nounOf(quantity.dimension)) + " where " + wanted, hint);
+  faults.error(
+      node.at, (where.empty() ? "" : name) + "a bare number where " + wanted,
+      "write '" + quantity.text + " " + std::string(unitOf(expected)) + "'" + (where.empty() ? "" : " " + where));
+}
+
 std::string shortName(const std::string& iri, const RuleReading& reading) {
   for (const auto& [prefix, base] : reading.prefixes)
     if (!base.empty() && iri.starts_with(base)) return prefix + ":" + iri.substr(base.size());
@@ -140,33 +175,21 @@ std::optional<Quantity> parseQuantity(const YamlNode& node, FaultList& faults) {
 }
 
 std::optional<Quantity> readQuantity(const YamlNode& node, perception::Dimension expected, RuleReading& reading) {
-  std::optional<Quantity> quantity;
   if (node.isScalar() && node.text.starts_with('$')) {
-    const auto constant = reading.constants.find(node.text.substr(1));
-    if (constant == reading.constants.end()) {
-      std::vector<std::string> names;
-      for (const auto& [name, unused] : reading.constants) names.push_back(name);
-      reading.faults.error(node.at, "unknown constant '" + node.text + "'", suggestion(node.text.substr(1), names));
-      return std::nullopt;
+    RuleConstant* constant = constantNamed(node, reading);
+    if (constant == nullptr) return std::nullopt;
+    if (!constant->faulty && !constant->misused_as.contains(expected)) {
+      if (fits(constant->quantity, expected)) return constant->quantity;
+      constant->misused_as.insert(expected);
+      const std::string place = toString(constant->at);
+      reportMisfit(node, constant->quantity, expected, "in " + place, "it is defined in " + place, reading.faults);
     }
-    constant->second.used = true;
-    if (constant->second.faulty) return std::nullopt;
-    quantity = constant->second.quantity;
-  } else {
-    quantity = parseQuantity(node, reading.faults);
-  }
-  if (!quantity) return std::nullopt;
-  if (expected == perception::Dimension::Count && quantity->text.ends_with('%')) {
-    reading.faults.error(node.at, "'" + node.text + "' is a share where a number of things is expected");
+    ++reading.unread;
     return std::nullopt;
   }
-  if (quantity->dimension == expected || (isPlain(quantity->dimension) && isPlain(expected))) return quantity;
-  const bool bare = isPlain(quantity->dimension);
-  reading.faults.error(node.at,
-                       bare ? "a bare number where " + std::string(nounOf(expected)) + " is expected"
-                            : "'" + node.text + "' is " + std::string(nounOf(quantity->dimension)) + " where " +
-                                  std::string(nounOf(expected)) + " is expected",
-                       bare ? "write '" + quantity->text + " " + std::string(unitOf(expected)) + "'" : "");
+  const auto quantity = parseQuantity(node, reading.faults);
+  if (!quantity || fits(*quantity, expected)) return quantity;
+  reportMisfit(node, *quantity, expected, "", "", reading.faults);
   return std::nullopt;
 }
 
