@@ -102,6 +102,21 @@ TEST(RuleIncluding, ReportsAMissingFileWhereItIsNamed) {
   EXPECT_THAT(loaded.diagnostics[0].message, ::testing::HasSubstr("gone.yaml"));
 }
 
+TEST(RuleIncluding, TellsOfUnreadableFilesWithTheWordErrorOnce) {
+  const auto folder = test::buildFolder() / "rule_include_faults";
+  std::filesystem::create_directories(folder);
+  writeFile(folder / "mine.yaml", "apiVersion: cluxel.rules/v1\ninclude: [ gone.yaml ]\n");
+  const auto textOf = [](const std::filesystem::path& root) {
+    const std::vector<std::filesystem::path> paths{root};
+    return format(checkRules(paths, outdoorCatalogue()).front());
+  };
+  EXPECT_EQ(textOf(folder), folder.string() + ": error: is a folder, a file was expected");
+  EXPECT_THAT(textOf(folder / "mine.yaml"), ::testing::StartsWith((folder / "mine.yaml").string() +
+                                                                  ":2:12: error: " + (folder / "gone.yaml").string() +
+                                                                  ": cannot be opened: No such file"));
+  std::filesystem::remove_all(folder);
+}
+
 TEST(RuleIncluding, RefusesToChangeWhatIsNotThere) {
   const LoadedRules loaded =
       loadOver("include: [ base.yaml ]\noverride: { rules: [ { id: ground/mian } ], constants: { lo: 1 m } }\n");

@@ -250,8 +250,8 @@ FoundSource findFile(const std::string& name, const std::string& from_key) {
   found.shown = path.lexically_normal().string();
   try {
     found.text = readFile(path);
-  } catch (const Error& fault) {
-    found.fault = fault.what();
+  } catch (const InputError& fault) {
+    found.fault = fault.diagnostics().front().message;
   }
   return found;
 }
@@ -291,7 +291,8 @@ LoadedRules loadRuleTexts(std::span<const RuleSource> texts, std::size_t roots, 
     for (const RuleSource& source : texts)
       if (found.key.empty() && (source.name == name || source.name == beside))
         found = {source.name, source.name, source.text, {}};
-    if (found.key.empty()) found.fault = "the file '" + name + "' is not among those given";
+    if (found.key.empty()) found.shown = name;
+    if (found.key.empty()) found.fault = "is not among the files that are given";
     return found;
   };
   return load(names, findText, catalogue, options);

@@ -25,7 +25,8 @@ class Gatherer {
 
   void include(const std::string& name, const std::string& from_key, const SourceLocation& at) {
     FoundSource source = find_source_(name, from_key);
-    if (!source.fault.empty()) return faults_.error(at, source.fault);
+    if (!source.fault.empty() && at.file.empty()) return faults_.error({.file = source.shown}, source.fault);
+    if (!source.fault.empty()) return faults_.error(at, source.shown + ": " + source.fault);
     const auto open = std::find(open_.begin(), open_.end(), source.key);
     if (open != open_.end()) return reportCycle(source, at);
     if (std::find(read_.begin(), read_.end(), source.key) != read_.end()) return;
