@@ -61,6 +61,31 @@ TEST_F(DataHomes, NameThePlaceLookedAtAndTheRemedy) {
   EXPECT_THROW(DataHome(fs::path()).locate("rules"), Error);
 }
 
+TEST_F(DataHomes, TellWhereANameWasLookedForAndWhichOneIsNearest) {
+  fs::current_path(folder_);
+  add("mine.rules.yaml");
+  const DataHome home(folder_ / "b");
+  const auto refusalOf = [&](const fs::path& name) {
+    try {
+      home.locate("rules", name);
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  const std::string places =
+      "' was not found; looked in the working directory and in " + (folder_ / "b" / "rules").string();
+  EXPECT_EQ(refusalOf("outdor.yaml"), "'outdor.yaml" + places + "\n  hint: did you mean 'outdoor.yaml'?");
+  EXPECT_EQ(refusalOf("outdoor"), "'outdoor" + places + "\n  hint: did you mean 'outdoor.yaml'?");
+  EXPECT_EQ(refusalOf("mine.rule.yaml"), "'mine.rule.yaml" + places + "\n  hint: did you mean 'mine.rules.yaml'?");
+  EXPECT_EQ(refusalOf("indeed.yaml"), "'indeed.yaml" + places + "\n  hint: known: outdoor.yaml");
+  EXPECT_EQ(refusalOf("indeed.rq"), "'indeed.rq" + places);
+  EXPECT_EQ(refusalOf("b/rules/outdor.yaml"),
+            "'b/rules/outdor.yaml" + places + "\n  hint: did you mean 'b/rules/outdoor.yaml'?");
+  EXPECT_EQ(refusalOf("./indeed.yaml"), "'./indeed.yaml" + places);
+  EXPECT_EQ(refusalOf("/nowhere/outdoor.yaml"), "'/nowhere/outdoor.yaml' was not found");
+}
+
 TEST_F(DataHomes, AreTheOptionThenTheVariableThenTheCheckoutOfTheProgram) {
   setenv("CLUXEL_HOME", (folder_ / "b").c_str(), 1);
   EXPECT_EQ(DataHome::find(folder_ / "a").root(), folder_ / "a");

@@ -21,7 +21,7 @@ class DataHome {
   std::filesystem::path locate(const std::filesystem::path& relative) const;
   /// Finds what a user calls `name`. In this order: an existing file or a path that has a folder in it;
   /// `root/folder/name`; an entry of the working directory. So a folder of the working directory never hides a name of
-  /// the data home.
+  /// the data home. Throws Error (FaultyInput) that tells where it looked, and the nearest name there.
   std::filesystem::path locate(const std::string& folder, const std::filesystem::path& name) const;
   const std::filesystem::path& root() const { return root_; }
 
