@@ -29,7 +29,7 @@ std::vector<fs::path> givenOr(const std::vector<fs::path>& given, const std::str
   if (given.empty()) return filesIn(home.locate(folder), {ending});
   std::vector<fs::path> files;
   files.reserve(given.size());
-  for (const fs::path& name : given) files.push_back(home.locate(folder, name));
+  for (const fs::path& name : given) files.push_back(home.locateFile(folder, name, ending));
   return files;
 }
 
@@ -129,7 +129,7 @@ MapInputs readMapInputs(const MapInputFiles& files, const DataHome& home) {
 MapInputs withNamedFiles(MapInputs inputs, const MapInputFiles& files, const DataHome& home) {
   if (!files.ontology.empty()) inputs.ontology = readAll(givenOr(files.ontology, "ontology", ".ttl", home));
   std::vector<fs::path> rules;
-  for (const fs::path& name : files.rules) rules.push_back(home.locate("rules", name));
+  for (const fs::path& name : files.rules) rules.push_back(home.locateFile("rules", name, ".rules.yaml"));
   if (!rules.empty()) {
     inputs.rules = readRules(rules, inputs.ontology);
     inputs.rule_roots = rules.size();

@@ -51,6 +51,29 @@ TEST_F(Program, FoldersOfTheWorkingDirectoryAreNotDataFolders) {
             run("export " + map + " --canonical").out);
 }
 
+TEST_F(Program, AFolderOfRulesOrOntologyIsAnsweredWithHowToNameItsFiles) {
+  const std::string home = test::sourceFolder().string(), rules = home + "/rules", ontology = home + "/ontology";
+  const std::string map = path("map.clx").string(), fresh = path("of_folder.clx").string();
+  const std::string building = "build " + path("campus").string() + " -o " + fresh;
+  const std::string other = rules + " " + rules + "/outdoor.rules.yaml";
+  for (const auto& [command, files] : std::vector<std::pair<std::string, std::string>>{
+           {building + " --ontology " + ontology, ontology + "/*.ttl"},
+           {building + " --rules " + rules, rules + "/*.rules.yaml"},
+           {building + " --sparql-rules " + rules, rules + "/*.rq"},
+           {"rules apply " + map + " --ontology " + ontology, ontology + "/*.ttl"},
+           {"rules apply " + map + " --rules " + rules, rules + "/*.rules.yaml"},
+           {"rules apply " + map + " --sparql-rules " + rules, rules + "/*.rq"},
+           {"rules check --ontology " + ontology, ontology + "/*.ttl"},
+           {"rules test " + rules, rules + "/*.rules-test.yaml"},
+           {"rules doc " + rules, rules + "/*.rules.yaml"},
+           {"rules try " + map + " " + rules, rules + "/*.rules.yaml"},
+           {"rules diff " + map + " " + other, rules + "/*.rules.yaml"}}) {
+    SCOPED_TRACE(command);
+    expectError(run(command), 4, ": error: is a folder, a file was expected\n  hint: name its files: " + files);
+    EXPECT_FALSE(fs::exists(fresh));
+  }
+}
+
 TEST_F(Program, BuildAndInfoNameTheDataHomeAndTheFiles) {
   const std::string home = test::sourceFolder().string();
   const Outcome again = run("build " + path("campus").string() + " -o " + path("named.clx").string());

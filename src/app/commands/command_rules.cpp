@@ -53,7 +53,7 @@ std::vector<fs::path> ruleFiles(const RulesOptions& options, const DataHome& hom
     if (fs::is_directory(name))
       for (fs::path& file : filesIn(name, {".rules.yaml", ".rq"})) files.push_back(std::move(file));
     else
-      files.push_back(home.locate("rules", name));
+      files.push_back(home.locateFile("rules", name, ".rules.yaml"));
   }
   if (files.empty() && !options.files.empty())
     throw Error(ErrorKind::InvalidArgument, options.files.front().string() + " holds no *.rules.yaml and no *.rq");
@@ -65,7 +65,7 @@ std::vector<fs::path> ruleFiles(const RulesOptions& options, const DataHome& hom
 std::vector<mapping::NamedText> ontologyFor(const RulesOptions& options, const DataHome& home) {
   std::vector<mapping::NamedText> texts = mapping::readMapInputs({}, home).ontology;
   for (const fs::path& name : options.inputs.ontology) {
-    const fs::path file = home.locate("ontology", name);
+    const fs::path file = home.locateFile("ontology", name, ".ttl");
     mapping::NamedText more{file.string(), readFile(file)};
     const bool is_known =
         std::any_of(texts.begin(), texts.end(), [&](const auto& text) { return text.text == more.text; });
@@ -146,7 +146,7 @@ perception::Scene sceneFor(const rules::SceneRequest& request, const RulesOption
 
 std::vector<fs::path> testFiles(const RulesOptions& options, const DataHome& home) {
   std::vector<fs::path> files;
-  for (const fs::path& file : options.files) files.push_back(home.locate("rules", file));
+  for (const fs::path& file : options.files) files.push_back(home.locateFile("rules", file, ".rules-test.yaml"));
   if (files.empty()) files.push_back(home.locate("rules/outdoor.rules-test.yaml"));
   return files;
 }

@@ -22,7 +22,7 @@ ExitCode writeReference(const ReferenceOptions& options, const Session& session)
   refuseToReplaceMap(options.out);
   const DataHome home = session.dataHome();
   std::vector<fs::path> files;
-  for (const fs::path& file : options.files) files.push_back(home.locate("rules", file));
+  for (const fs::path& file : options.files) files.push_back(home.locateFile("rules", file, ".rules.yaml"));
   if (files.empty()) files.push_back(home.locate("rules/outdoor.rules.yaml"));
   const rules::ClassCatalogue catalogue = mapping::classCatalogueOf(mapping::readMapInputs({}, home).ontology);
   const rules::RuleSet rules = loadRules(files, catalogue, mapping::withCheckedQueries()).require();

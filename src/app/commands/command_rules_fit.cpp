@@ -107,8 +107,8 @@ void printFit(const std::vector<tasks::FittedRule>& fitted, Session& session) {
 
 ExitCode fit(const FitOptions& options, Session& session) {
   const DataHome home = session.dataHome();
-  const fs::path file =
-      options.rules.empty() ? home.locate("rules/outdoor.rules.yaml") : home.locate("rules", options.rules);
+  const fs::path file = options.rules.empty() ? home.locate("rules/outdoor.rules.yaml")
+                                              : home.locateFile("rules", options.rules, ".rules.yaml");
   const rules::ClassCatalogue catalogue = classCatalogueOf(readMapInputs(options.inputs, home).ontology);
   const rules::RuleSet rules = loadRules(std::vector{file}, catalogue, mapping::withCheckedQueries()).require();
   const auto examples = collect(options, rules, session);

@@ -18,7 +18,7 @@ struct TrialOptions {
 
 rules::RuleSet loadFor(const mapping::MapReader& map, const fs::path& file, const Session& session) {
   const rules::ClassCatalogue catalogue = classCatalogueOf(map.inputs().ontology);
-  const fs::path found = session.dataHome().locate("rules", file);
+  const fs::path found = session.dataHome().locateFile("rules", file, ".rules.yaml");
   return loadRules(std::vector{found}, catalogue, mapping::withCheckedQueries()).require();
 }
 

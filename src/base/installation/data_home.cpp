@@ -101,4 +101,12 @@ fs::path DataHome::locate(const std::string& folder, const fs::path& name) const
   refuseName(root_ / folder, name);
 }
 
+fs::path DataHome::locateFile(const std::string& folder, const fs::path& name, std::string_view ending) const {
+  fs::path found = locate(folder, name);
+  if (std::error_code ignored; fs::is_directory(found, ignored))
+    throw InputError({.file = found.string()}, "is a folder, a file was expected",
+                     "name its files: " + (found / "*").string() + std::string(ending));
+  return found;
+}
+
 }  // namespace cluxel

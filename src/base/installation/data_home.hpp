@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 namespace cluxel {
 
@@ -23,6 +24,9 @@ class DataHome {
   /// `root/folder/name`; an entry of the working directory. So a folder of the working directory never hides a name of
   /// the data home. Throws Error (FaultyInput) that tells where it looked, and the nearest name there.
   std::filesystem::path locate(const std::string& folder, const std::filesystem::path& name) const;
+  /// As locate(), for a file whose name has `ending`; of a folder the message tells to name its files.
+  std::filesystem::path locateFile(const std::string& folder, const std::filesystem::path& name,
+                                   std::string_view ending) const;
   const std::filesystem::path& root() const { return root_; }
 
  private:
