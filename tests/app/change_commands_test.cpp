@@ -190,6 +190,9 @@ TEST_F(ChangeCommands, WatchAddsWhatArrives) {
   ASSERT_EQ(first.code, 0) << first.err;
   EXPECT_TRUE(canonical("watched.clx") == canonical("whole.clx"));
   EXPECT_EQ(run(watch).code, 3) << "nothing was added";
+  EXPECT_EQ(run(watch + " --model oakland --rules outdoor.rules.yaml").code, 3) << "those of the map";
+  expectError(run(watch + " --model campus"), 2, "change the map with 'cluxel rules apply'");
+  expectError(run(watch + " --rules absent.rules.yaml"), 4, "absent.rules.yaml");
 }
 
 TEST_F(ChangeCommands, StateOnlyTellsInADryRun) {

@@ -3,7 +3,10 @@
 #include "app/command.hpp"
 #include "app/shared_options.hpp"
 #include "app/stop_signals.hpp"
+#include "cluxel/error.hpp"
+#include "mapping/build/work_file.hpp"
 #include "mapping/change/folder_watch.hpp"
+#include "mapping/map_state.hpp"
 
 namespace cluxel::app {
 
@@ -24,7 +27,20 @@ void report(const WatchOptions& options, std::size_t added, std::size_t scans, s
   std::fflush(stdout);
 }
 
+/// A map keeps its model and rules. They may be named again, so that the command that made the map goes on.
+void refuseOtherInputs(const WatchOptions& options, const Session& session) {
+  if ((options.files.model.empty() && options.files.rules.empty()) || mapping::isToBuild(options.map)) return;
+  const mapping::MapInputs inputs =
+      mapping::requireFinishedInputs(rdf::Environment::open(options.map, rdf::OpenMode::ReadOnly)->read(), options.map);
+  if (withNamedFiles(inputs, options.files, session.dataHome()).hash() == inputs.hash()) return;
+  throw Error(ErrorKind::InvalidArgument,
+              options.map.string() +
+                  ": has another model or other rules than --model and --rules name, and watch keeps "
+                  "what a map has; leave them out, or change the map with 'cluxel rules apply'");
+}
+
 ExitCode watch(const WatchOptions& options, Session& session) {
+  refuseOtherInputs(options, session);
   mapping::WatchParams params = options.params;
   params.threads = session.threadCount();
   params.scans = options.scans.params();
