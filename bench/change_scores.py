@@ -89,10 +89,10 @@ def reported_events(changes):
     for change in changes["changes"]:
         box = (change["box_m"]["min"], change["box_m"]["max"])
         kind = "new" if change["change"] == "appeared" else "gone"
-        events.append((kind, box, change.get("class", "unnamed") + " " + change["change"]))
+        events.append((kind, box, (change.get("class") or "unnamed") + " " + change["change"]))
         if "now" in change:
             now = change["now"]["box_m"]
-            events.append(("new", (now["min"], now["max"]), change["now"].get("class", "unnamed") + " moved here"))
+            events.append(("new", (now["min"], now["max"]), (change["now"].get("class") or "unnamed") + " moved here"))
     return events
 
 

@@ -47,7 +47,7 @@ test('the slider over visits shows what cluxel changes finds', async () => {
   assert.equal(await count('unobserved'), unseen.length);
   assert.equal(await page.locator('ol.change-list li').count(), changes.changes.length);
   assert.equal(await page.locator('.pin-mark').count(), changes.changes.length);
-  const whole = changes.changes.flatMap((change) => [change, change.now]).filter((thing) => thing?.number !== undefined && !thing.part);
+  const whole = changes.changes.flatMap((change) => [change, change.now]).filter((thing) => thing && thing.number !== null && !thing.part);
   const wanted = new Set([...whole, ...unseen].map((thing) => thing.number));
   const lit = (await states(page)).flatMap((now, number) => (now === 'lit' ? [number] : []));
   assert.deepEqual(new Set(lit), wanted);
@@ -57,7 +57,7 @@ test('a change in the list is gone to, and the first visit clears all', async ()
   const { page } = open;
   await page.click('#tab-visits');
   await toVisit(page, 1);
-  const first = changes.changes.findIndex((change) => change.number !== undefined);
+  const first = changes.changes.findIndex((change) => change.number !== null);
   await page.click(`ol.change-list li:nth-child(${first + 1}) button`);
   assert.equal(await page.evaluate(() => window.cluxelPage.store.state.selected.number), changes.changes[first].number);
   await toVisit(page, 0);

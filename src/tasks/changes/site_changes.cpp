@@ -114,8 +114,9 @@ ChangeJson objectJson(const mapping::MapReader& map, std::uint32_t number) {
 }
 
 ChangeJson thingJson(const mapping::MapReader& map, const ChangedThing& thing) {
-  ChangeJson json = thing.object ? objectJson(map, *thing.object) : ChangeJson::object();
-  if (thing.object) json["part"] = thing.is_part;
+  ChangeJson json{{"object", nullptr}, {"number", nullptr}, {"class", nullptr}};
+  if (thing.object) json = objectJson(map, *thing.object);
+  json["part"] = thing.is_part;
   json["cluxels"] = thing.cluxels.size();
   json["box_m"] = boxJson(thing.box);
   return json;

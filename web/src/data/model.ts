@@ -45,7 +45,8 @@ export interface RuleFile { name: string; text: string; root: boolean }
 /** Scans taken without a long pause; times in seconds since 1970. */
 export interface Visit { begin: number; end: number; scans: number }
 export interface Extent { min: number[]; max: number[] }
-interface ChangedThing { object?: string; number?: number; class?: string; part?: boolean; box_m: Extent }
+/** Of something that is no object, the names are null. */
+interface ChangedThing { object: string | null; number: number | null; class: string | null; part: boolean; box_m: Extent }
 export interface SiteChange extends ChangedThing { change: 'vanished' | 'appeared' | 'moved'; now?: ChangedThing; distance?: number }
 type Presence = 'present' | 'absent' | 'not observed';
 export interface ObjectStates { object: string; number: number; before: Presence; after: Presence }

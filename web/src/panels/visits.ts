@@ -85,7 +85,7 @@ export class VisitPanel {
     for (const states of unseen) tints.set(states.number, KINDS.unobserved.colour);
     for (const change of found.changes)
       for (const thing of [change, change.now])
-        if (thing?.number !== undefined && !thing.part) tints.set(thing.number, KINDS[change.change].colour);
+        if (thing && thing.number !== null && !thing.part) tints.set(thing.number, KINDS[change.change].colour);
     this.isShowing = true;
     this.store.set('lit', null);
     this.store.set('tints', tints);
@@ -101,7 +101,7 @@ export class VisitPanel {
   }
 
   private button(change: SiteChange): HTMLElement {
-    const object = change.number === undefined ? undefined : this.model.objects[change.number], at = middleOf(change);
+    const object = change.number === null ? undefined : this.model.objects[change.number], at = middleOf(change);
     const name = object ? nameOf(object) : 'something without a name';
     const moved = change.distance === undefined ? '' : ` by ${rounded(change.distance, 1)} m`;
     return el('button', { type: 'button', class: 'plain', onclick: () => this.goTo(object, at) },
