@@ -57,6 +57,14 @@ std::string didYouMean(const std::string& name, const Names& known) {
   return nearest ? "; did you mean '" + *nearest + "'?" : "";
 }
 
+/// CLI11 says "--label: At Most 1 required but received 2".
+std::string withoutRepetition(const std::string& what) {
+  constexpr std::string_view kRepeated = ": At Most 1 required but received ";
+  const std::size_t at = what.find(kRepeated);
+  if (at == std::string::npos) return what;
+  return what.substr(0, at) + " is given " + what.substr(at + kRepeated.size()) + " times; give it once";
+}
+
 std::string unexpected(const std::string& argument, const Reached& reached) {
   if (argument.starts_with('-')) {
     const std::string option = argument.substr(0, argument.find('='));
@@ -79,7 +87,7 @@ std::string unexpected(const std::string& argument, const Reached& reached) {
 std::string usageMessage(const CLI::App& app, const CLI::ParseError& fault) {
   const Reached reached = reachedIn(app);
   const Names extras = app.remaining(true);
-  std::string what = fault.what();
+  std::string what = withoutRepetition(fault.what());
   if (!extras.empty())
     what = unexpected(extras.front(), reached);
   else if (const Names commands = commandsOf(*reached.command); !commands.empty())
