@@ -38,6 +38,24 @@ TEST_F(StateCommand, TakesAClassANameAndARemark) {
   EXPECT_EQ(listed(), 3u);
 }
 
+TEST_F(StateCommand, ANewLabelReplacesTheEarlierOneAndNotesAreAdded) {
+  const std::string tree = "--object " + one("Tree");
+  ASSERT_EQ(state(tree + " --label north --note seen").code, 0);
+  const Outcome again = state(tree + " --label south --note felled");
+  EXPECT_EQ(again.code, 0) << again.err;
+  EXPECT_THAT(again.err, HasSubstr("replaces the statement"));
+  const auto valuesOf = [&](const std::string& property) {
+    return query("stated.clx", "SELECT ?v { ?x a clx:Object ; " + property + " ?v } ORDER BY ?v", "--format csv").out;
+  };
+  EXPECT_EQ(valuesOf("rdfs:label"), "v\r\nsouth\r\n");
+  EXPECT_EQ(valuesOf("rdfs:comment"), "v\r\nfelled\r\nseen\r\n");
+  EXPECT_THAT(state(tree + " --label south").err, HasSubstr("was made already"));
+  EXPECT_EQ(state(tree + " --label north").code, 0) << "a label that was withdrawn";
+  EXPECT_EQ(valuesOf("rdfs:label"), "v\r\nnorth\r\n");
+  EXPECT_EQ(listed(), 3u);
+  expectError(state(tree + " --label east --label west"), 2, "state: --label is given 2 times; give it once");
+}
+
 TEST_F(StateCommand, AFaultyFileOfStatementsIsNamedWithItsFault) {
   ASSERT_EQ(state("--object " + one("Tree") + " --is clx:StreetLamp").code, 0);
   const fs::path file = path("edited.nq");

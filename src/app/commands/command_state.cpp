@@ -89,7 +89,39 @@ void refuseWholeClass(const mapping::MapReader& map, const ContentHash& id) {
           "possible");
 }
 
-/// The new statement about the object, and the earlier statements about its class, which it replaces.
+/// What of an object there is only one of: its class and its label, apart from labels in some language.
+enum class Single : std::uint8_t { Nothing, Class, Label };
+
+Single singleOf(const Statement& statement) {
+  switch (statement.kind) {
+    case StatementKind::Is:
+    case StatementKind::IsNot:
+    case StatementKind::Remove:
+      return Single::Class;
+    case StatementKind::Fact:
+      if (statement.property == rdf::vocabulary::rdfs("label") && statement.value.language.empty())
+        return Single::Label;
+      return Single::Nothing;
+    default:
+      return Single::Nothing;
+  }
+}
+
+/// Withdraws earlier statements about the object in whose place new ones come.
+void replaceEarlier(const mapping::MapReader& map, const ContentHash& object, mapping::StatementEdit& edit,
+                    ProgressSink& sink) {
+  for (const mapping::KnownStatement& known : mapping::knownStatements(map.quads())) {
+    if (known.object != rdf::iriOfObject(object)) continue;
+    const Single single = singleOf(known.statement);
+    const ContentHash id = known.statement.id();
+    const auto comesInPlace = [&](const Statement& added) { return singleOf(added) == single && added.id() != id; };
+    if (single == Single::Nothing || std::none_of(edit.added.begin(), edit.added.end(), comesInPlace)) continue;
+    edit.withdrawn.push_back(id);
+    sink.note("replaces the statement " + id.hex() + ": " + textOf(known.statement));
+  }
+}
+
+/// The new statements about the object, and the earlier ones that they replace.
 void addAboutObject(const mapping::MapReader& map, const StateOptions& options, mapping::StatementEdit& edit,
                     ProgressSink& sink) {
   if (const std::string note = tasks::nameNote(map, options.object); !note.empty()) sink.note(note);
@@ -104,19 +136,10 @@ void addAboutObject(const mapping::MapReader& map, const StateOptions& options, 
   if (!options.is.empty()) add(StatementKind::Is, "", classOf(options.is));
   if (!options.is_not.empty()) add(StatementKind::IsNot, "", classOf(options.is_not));
   if (options.remove) add(StatementKind::Remove, "", {});
-  const bool about_class = !edit.added.empty();
+  if (!edit.added.empty()) refuseWholeClass(map, object);
   if (!options.label.empty()) add(StatementKind::Fact, rdf::vocabulary::rdfs("label"), Term::literal(options.label));
   if (!options.note.empty()) add(StatementKind::Fact, rdf::vocabulary::rdfs("comment"), Term::literal(options.note));
-  if (!about_class) return;
-  refuseWholeClass(map, object);
-  for (const mapping::KnownStatement& known : mapping::knownStatements(map.quads())) {
-    const StatementKind kind = known.statement.kind;
-    const bool of_class = kind == StatementKind::Is || kind == StatementKind::IsNot;
-    if (!of_class || known.object != rdf::iriOfObject(object)) continue;
-    if (known.statement.id() == edit.added.front().id()) continue;
-    edit.withdrawn.push_back(known.statement.id());
-    sink.note("replaces the statement " + known.statement.id().hex() + ": " + textOf(known.statement));
-  }
+  replaceEarlier(map, object, edit, sink);
 }
 
 ExitCode change(const StateOptions& options, Session& session) {
