@@ -11,4 +11,8 @@ void freeMemory(std::vector<Values>&... vectors) {
   (std::vector<Values>().swap(vectors), ...);
 }
 
+/// Gives memory that is free, but was kept for reuse, back to the system, when it is more than some 200 MB. After a
+/// batch the next one begins with the memory that it needs. Cost: about 0.3 ms a MB, mostly when it is needed again.
+void returnFreeMemory();
+
 }  // namespace cluxel

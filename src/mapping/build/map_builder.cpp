@@ -9,6 +9,7 @@
 #include <set>
 #include <utility>
 
+#include "base/free_memory.hpp"
 #include "base/utc_time.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/build/build_poses.hpp"
@@ -71,7 +72,10 @@ class MapBuild {
 
   BuildReport run() {
     goOn();
-    for (std::size_t next = 0; next < scans_.size();) next = addBatch(next);
+    for (std::size_t next = 0; next < scans_.size();) {
+      if (next > 0) work_.reopen();
+      next = addBatch(next);
+    }
     for (const std::string& note : reading_notes_.totals()) sink_.note(note);
     return report_;
   }
@@ -130,10 +134,13 @@ class MapBuild {
                    StageClock& clock) {
     stages_.update(transaction, std::move(changes), params_.threads, clock);
     stages_.dropPoints();
+    returnFreeMemory();
     if (is_last) work_.takeOverStatements(transaction, params_.drop_statements, sink_);
     if (is_last) addOperatorStatements(transaction, params_.statements);
     const SemanticUpdate layers =
         updateSemanticLayer(transaction, parsed_, stages_, ChangedInputs::Scans, {.threads = params_.threads}, clock);
+    if (!is_last) stages_.dropMany();
+    returnFreeMemory();
     const std::vector<Cloud> clouds = storedClouds(transaction);
     if (const std::string note = summaryOf(layers.statements); !note.empty()) sink_.note(note);
     storeInputs(transaction, parsed_.inputs);

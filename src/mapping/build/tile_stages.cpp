@@ -4,6 +4,7 @@
 
 #include <array>
 
+#include "base/free_memory.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/build/recent_scans.hpp"
 #include "mapping/build/way_tiles.hpp"
@@ -261,7 +262,7 @@ void TileStages::hold(const rdf::ReadTransaction& transaction, const TileSet& ti
   giveUpOthers(outputs_.labels), giveUpOthers(outputs_.components), giveUpOthers(outputs_.contacts);
   std::size_t points = 0;
   for (const auto& [key, tile] : outputs_.points) points += tile.size();
-  if (points > kPointsBeside) dropPoints();
+  if (points > kPointsBeside) dropPoints(), returnFreeMemory();
   RecentScans scans(transaction);
   OutputReader reader(transaction, scans, outputs_);
   reader.readForScene(tiles);

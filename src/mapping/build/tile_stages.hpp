@@ -50,6 +50,11 @@ class TileStages {
   bool updateWays(rdf::WriteTransaction& transaction, unsigned threads);
   /// The stages of ways count the even ground of `changed` as changed, and that of other tiles in `kept` no longer.
   void noteEven(const perception::TileSet& kept, const perception::TileSet& changed);
+  /// Gives outputs of many tiles back; those of few are likely to be read again soon.
+  void dropMany() {
+    constexpr std::size_t kFew = 400;
+    if (outputs_.summaries.size() > kFew) dropAll();
+  }
   /// All changes since the last call of this function.
   OutputChanges takeChanges() { return std::exchange(changes_, {}); }
   /// Reads what the scene is assembled from, of all tiles. Cost: about 100 ns a cluxel.

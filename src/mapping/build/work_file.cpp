@@ -116,6 +116,11 @@ WorkFile::~WorkFile() {
   if (is_unused) removeMap(path_);
 }
 
+void WorkFile::reopen() {
+  environment_.reset();
+  environment_ = rdf::Environment::open(path_, rdf::OpenMode::ReadWrite);
+}
+
 void WorkFile::takeOverStatements(rdf::WriteTransaction& into, bool drop, ProgressSink& sink) {
   if (replaces_) {
     replaced_ = rdf::writeMap(target_, kPatience);

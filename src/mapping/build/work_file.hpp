@@ -30,6 +30,9 @@ class WorkFile {
   ~WorkFile();
 
   rdf::Environment& environment() { return *environment_; }
+  /// Opens the file again: LMDB keeps the memory of as many pages as its largest transaction has written. No
+  /// transaction may be open.
+  void reopen();
   const std::filesystem::path& path() const { return path_; }
   /// The state of the file when it was opened; absent when it is empty.
   const std::optional<MapState>& found() const { return found_; }

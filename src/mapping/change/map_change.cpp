@@ -81,7 +81,7 @@ ChangeReport addBy(MapEditor& editor, const scan::ScanSet& scans) {
     throw;
   }
   for (const std::string& note : notes.totals()) sink.note(note);
-  return std::move(editor.result());
+  return editor.takeReport();
 }
 
 ChangeReport addedTo(const fs::path& file, const scan::ScanSet& scans, const ChangeParams& params, ProgressSink& sink) {
@@ -117,7 +117,7 @@ ChangeReport removedFrom(const fs::path& file, const std::vector<scan::ScanId>& 
     throw Error(ErrorKind::InvalidArgument, file.string() + ": no scan would be left; remove the file instead");
   editor.result().scans_removed = removed.size();
   if (!removed.empty()) editor.commit(transaction, "retract", std::move(changes), removed);
-  return std::move(editor.result());
+  return editor.takeReport();
 }
 
 /// A scan that gets another pose.
@@ -206,7 +206,7 @@ ChangeReport movedIn(const fs::path& file, const std::vector<ScanPose>& poses, c
     noteDone(editor, editor.result().scans_moved, "moved");
     throw;
   }
-  return std::move(editor.result());
+  return editor.takeReport();
 }
 
 ChangeReport appliedTo(const fs::path& file, const std::function<MapInputs(MapInputs)>& change,
@@ -215,11 +215,11 @@ ChangeReport appliedTo(const fs::path& file, const std::function<MapInputs(MapIn
   MapInputs inputs = change(editor.inputs().inputs);
   inputs.map_origin = editor.inputs().inputs.map_origin;
   inputs.crs = editor.inputs().inputs.crs;
-  if (inputs.hash() == editor.inputs().inputs.hash()) return std::move(editor.result());
+  if (inputs.hash() == editor.inputs().inputs.hash()) return editor.takeReport();
   editor.setInputs(parseInputs(inputs));
   rdf::WriteTransaction transaction = editor.begin();
   editor.commit(transaction, "rules apply", {}, {});
-  return std::move(editor.result());
+  return editor.takeReport();
 }
 
 /// Frees the space that a committed change has left, where it is too much.

@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <tuple>
 #include <utility>
 
 #include "base/file_bytes.hpp"
+#include "base/free_memory.hpp"
 #include "base/utc_time.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/build/batch_size.hpp"
@@ -26,6 +28,10 @@ namespace cluxel::mapping {
 namespace fs = std::filesystem;
 
 namespace {
+
+/// Tiles that are decided in one commit. LMDB keeps the memory of as many pages as its largest transaction has written:
+/// after a large commit the file is opened again, which takes some milliseconds.
+constexpr std::size_t kLargeCommit = 200;
 
 /// A token in the cache of a commit tells whether the commit is still the newest.
 constexpr const char* kRestToken = "rest of a map editor";
@@ -120,6 +126,10 @@ void MapEditor::setInputs(ParsedInputs inputs) {
 }
 
 rdf::WriteTransaction MapEditor::begin() {
+  if (std::exchange(is_worn_, false)) {
+    environment_.reset();
+    environment_ = openForChange(file_);
+  }
   rdf::WriteTransaction transaction = environment_->write();
   const auto state = storedState(transaction);
   if (!state || !state->is_finished || state->inputs_hash != inputs_hash_)
@@ -193,7 +203,7 @@ SemanticUpdate MapEditor::decideInParts(rdf::WriteTransaction& transaction, std:
     decided += update.tiles_decided;
   }
   update.is_local = is_local, update.tiles_decided = decided;
-  update.before = difference.before(), update.after = difference.after();
+  std::tie(update.before, update.after) = std::move(difference).take();
   return update;
 }
 
@@ -202,6 +212,9 @@ void MapEditor::commit(rdf::WriteTransaction& transaction, const std::string& op
   const double started_s = secondsNow();
   StageClock clock(sink_);
   SemanticUpdate layers = decide(transaction, std::move(changes), clock);
+  const std::size_t update_size = layers.tiles_decided;
+  if (stages_) stages_->dropMany();
+  returnFreeMemory();
   inputs_hash_ = parsed_.inputs.hash().hex();
   storeInputs(transaction, parsed_.inputs);
   storeState(transaction, MapState{true, inputs_hash_});
@@ -216,6 +229,7 @@ void MapEditor::commit(rdf::WriteTransaction& transaction, const std::string& op
   note(std::move(layers));
   if (params_.dry_run) return;
   transaction.commit();
+  is_worn_ = update_size > kLargeCommit;
   try {
     report_.free_space = rdf::freeSpaceOf(environment_->read());
   } catch (const Error& error) {
@@ -224,10 +238,15 @@ void MapEditor::commit(rdf::WriteTransaction& transaction, const std::string& op
 }
 
 void MapEditor::note(SemanticUpdate update) {
-  difference_.add(std::move(update.before), std::move(update.after));
-  if (names_at_end_) return;
-  report_.before = difference_.before(), report_.after = difference_.after();
-  report_.objects = compareStates(report_.before, report_.after, report_.object_count - report_.after.size());
+  if (!names_at_end_) difference_.add(std::move(update.before), std::move(update.after));
+}
+
+ChangeReport MapEditor::takeReport() {
+  if (!names_at_end_ && report_.has_changes) {
+    std::tie(report_.before, report_.after) = std::exchange(difference_, {}).take();
+    report_.objects = compareStates(report_.before, report_.after, report_.object_count - report_.after.size());
+  }
+  return std::move(report_);
 }
 
 void MapEditor::handOnNames() {

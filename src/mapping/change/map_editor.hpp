@@ -85,7 +85,10 @@ class MapEditor {
   /// this editor is of no use. Throws as the constructor when another program is changing the map.
   bool resume();
 
+  /// The report so far, without what became of the objects.
   ChangeReport& result() { return report_; }
+  /// The whole report, at the end of a change. Cost: that of compareStates().
+  ChangeReport takeReport();
   ProgressSink& sink() const { return sink_; }
   const ChangeParams& params() const { return params_; }
 
@@ -121,6 +124,7 @@ class MapEditor {
   TileSet touched_, changed_;    ///< in all commits
   ObjectDifference difference_;  ///< from before the first commit on
   bool has_begun_ = false;
+  bool is_worn_ = false;  ///< the file is to be opened again
   ChangeReport report_;
 };
 

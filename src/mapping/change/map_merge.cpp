@@ -230,7 +230,7 @@ class Merge {
     for (const std::size_t i : others) addMap(i, additions);
     additions.finish();
     editor.handOnNames();
-    return std::move(editor.result());
+    return editor.takeReport();
   }
 
   /// An older copy of a map does not bring back what was withdrawn since.

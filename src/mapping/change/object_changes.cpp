@@ -125,20 +125,16 @@ void ObjectDifference::add(std::vector<ObjectMembers> before, std::vector<Object
 
 namespace {
 
-std::vector<ObjectMembers> valuesOf(const std::map<ContentHash, ObjectMembers>& objects) {
+std::vector<ObjectMembers> valuesOf(std::map<ContentHash, ObjectMembers> objects) {
   std::vector<ObjectMembers> values;
-  for (const auto& [id, object] : objects) values.push_back(object);
+  for (auto& [id, object] : objects) values.push_back(std::move(object));
   return values;
 }
 
 }  // namespace
 
-std::vector<ObjectMembers> ObjectDifference::before() const {
-  return valuesOf(gone_);
-}
-
-std::vector<ObjectMembers> ObjectDifference::after() const {
-  return valuesOf(fresh_);
+std::pair<std::vector<ObjectMembers>, std::vector<ObjectMembers>> ObjectDifference::take() && {
+  return {valuesOf(std::move(gone_)), valuesOf(std::move(fresh_))};
 }
 
 void keepDifferent(std::vector<ObjectMembers>& before, std::vector<ObjectMembers>& after) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/content_hash.hpp"
@@ -57,8 +58,8 @@ class ObjectDifference {
  public:
   /// The objects that one change took away, and those that it made.
   void add(std::vector<ObjectMembers> before, std::vector<ObjectMembers> after);
-  std::vector<ObjectMembers> before() const;  ///< sorted by id
-  std::vector<ObjectMembers> after() const;   ///< sorted by id
+  /// Objects before and after, sorted by id.
+  std::pair<std::vector<ObjectMembers>, std::vector<ObjectMembers>> take() &&;
 
  private:
   std::map<ContentHash, ObjectMembers> gone_, fresh_;

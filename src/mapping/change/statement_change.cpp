@@ -54,7 +54,7 @@ ChangeReport changeStatements(const std::filesystem::path& file, const Statement
     editor.commit(transaction, "state", {}, {});
   else
     editor.result().statements = toldOutcomes(rdf::QuadReader(static_cast<const rdf::ReadTransaction&>(transaction)));
-  return std::move(editor.result());
+  return editor.takeReport();
 }
 
 RegionAnchor regionAnchor(const std::vector<Cloud>& clouds, const std::vector<Eigen::Vector2d>& corners_map) {
