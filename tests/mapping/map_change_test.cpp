@@ -120,16 +120,18 @@ TEST_F(MapChange, ALaterTimeOfAKnownScanIsKept) {
       << "scans:\n  - {path: " << campus->files()[1].string() << ", time_s: 1700000000.5}\n";
   const ScanSet again = scansOf({folder.path() / "later.yaml"});
   ASSERT_EQ(again.load(0).id, ids[1]);
-  build({{0, 0}, {1, 0}});
-  const ChangeReport report = extendMap(map(), again, {}, silence());
-  EXPECT_EQ(report.scans_already_there, 1U);
-  EXPECT_TRUE(report.has_changes);
   std::ofstream(folder.path() / "both.yaml")
       << "scans:\n  - {path: " << campus->files()[0].string()
       << ", time_s: 1600000000}\n  - {path: " << campus->files()[1].string() << ", time_s: 1700000000.5}\n";
   const ScanSet both = scansOf({folder.path() / "both.yaml"});
   buildMap(both, *inputs, folder.path() / "other.clx", {}, silence());
-  EXPECT_TRUE(canonicalText(map()) == canonicalText(folder.path() / "other.clx"));
+  for (const std::uint64_t cluxels : {UpdateParams{}.whole_cluxels, std::uint64_t{10}}) {
+    build({{0, 0}, {1, 0}});
+    const ChangeReport report = extendMap(map(), again, {.whole_cluxels = cluxels}, silence());
+    EXPECT_EQ(report.scans_already_there, 1U);
+    EXPECT_TRUE(report.has_changes);
+    EXPECT_TRUE(canonicalText(map()) == canonicalText(folder.path() / "other.clx")) << cluxels;
+  }
 }
 
 TEST_F(MapChange, LineageLeadsFromCommitToCommit) {

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <map>
 #include <random>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -73,6 +74,8 @@ inline std::map<std::string, std::string> storedBlocks(const std::filesystem::pa
     transaction.forEachBlock(table, "", [&](std::string_view key, std::string_view bytes) {
       blocks[std::string(table) + "/" + std::string(key)] = std::string(bytes);
     });
+  for (const std::string key : {"rule structure", "rule numbers"})
+    blocks["meta/" + key] = transaction.block(tables::kMeta, key).value_or("");
   blocks["meta/ways"] = transaction.block(tables::kMeta, "ways").value_or("");
   return blocks;
 }
@@ -155,6 +158,40 @@ class StreetChanges {
       inputs_ = std::move(changed);
       return other.what;
     }
+  }
+
+  /// Something is exchanged that is no number of a rule, or back again: what small patches of ground are, what a sign's
+  /// face may be, whether rays count that pass bushes.
+  std::string changeMore() {
+    const auto exchange = [](std::string& text, std::pair<std::string, std::string> parts) {
+      if (text.find(parts.first) == std::string::npos) std::swap(parts.first, parts.second);
+      const std::size_t at = text.find(parts.first);
+      if (at == std::string::npos) throw std::logic_error("the shipped rules lack '" + parts.first + "'");
+      text.replace(at, parts.first.size(), parts.second);
+      return parts.second;
+    };
+    const std::string barrier = "\nclx:Bush rdfs:subClassOf clx:Barrier .\n";
+    std::string done;
+    switch (below(3)) {
+      case 0:
+        done = exchange(inputs_.rules.front().text, {"no: { accept: { merge_into: class, confidence: 0.80 } }",
+                                                     "no: { reject: \"a small patch\" }"});
+        break;
+      case 1:
+        done = exchange(inputs_.rules.front().text, {"sign_fittings: { from: { label_in: [column, ",
+                                                     "sign_fittings: { from: { label_in: [scatter, column, "});
+        break;
+      default:
+        std::string& text = inputs_.ontology.back().text;
+        done = barrier;
+        if (text.find(barrier) == std::string::npos)
+          text += barrier;
+        else
+          text.erase(text.find(barrier), barrier.size());
+    }
+    note(applyInputs(
+        map(), [&](const MapInputs&) { return inputs_; }, params(), silence()));
+    return done;
   }
 
   /// The ontology gets another class, which no rule makes.

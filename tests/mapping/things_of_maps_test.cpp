@@ -206,7 +206,8 @@ TEST_F(ThingsOfMaps, OfMergedMapsGoOnFromAllOfThem) {
   std::size_t from_a = 0, from_b = 0;
   for (const auto& [object, thing] : merged)
     for (const auto& [of_map, count] : {std::pair(&of_a, &from_a), std::pair(&of_b, &from_b)})
-      *count += std::any_of(of_map->begin(), of_map->end(), [&](const auto& name) { return name.second == thing; });
+      *count += std::any_of(of_map->begin(), of_map->end(),
+                            [&, &its_thing = thing](const auto& name) { return name.second == its_thing; });
   EXPECT_GT(from_a, 0U);
   EXPECT_GT(from_b, 0U);
   std::size_t lineage_of_b = 0;

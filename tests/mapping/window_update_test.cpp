@@ -54,17 +54,24 @@ TEST(WindowUpdate, AppliesOtherNumbersOfRulesAsABuildDoes) {
       60, 8, [](StreetChanges& changes, unsigned i) { return i % 4 == 3 ? changes.step() : changes.changeANumber(); });
 }
 
+TEST(WindowUpdate, ComesBackToFormerRulesInStrips) {
+  checkSequences(
+      100, 6, [](StreetChanges& changes, unsigned) { return changes.changeMore(); }, How::InStrips);
+}
+
 TEST(WindowUpdate, DecidesAllInStripsAsABuildDoes) {
   checkSequences(
       80, 6,
       [](StreetChanges& changes, unsigned i) {
-        switch (i % 4) {
+        switch (i % 5) {
           case 0:
             return changes.stateSomething();
           case 1:
             return changes.addAClass();
           case 2:
             return changes.step();
+          case 3:
+            return changes.changeMore();
           default:
             return changes.changeANumber();
         }

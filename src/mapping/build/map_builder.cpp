@@ -139,7 +139,7 @@ class MapBuild {
     if (is_last) addOperatorStatements(transaction, params_.statements);
     const SemanticUpdate layers =
         updateSemanticLayer(transaction, parsed_, stages_, ChangedInputs::Scans, {.threads = params_.threads}, clock);
-    if (!is_last) stages_.dropMany();
+    if (!is_last) stages_.dropIfMany();
     returnFreeMemory();
     const std::vector<Cloud> clouds = storedClouds(transaction);
     if (const std::string note = summaryOf(layers.statements); !note.empty()) sink_.note(note);

@@ -51,7 +51,7 @@ class TileStages {
   /// The stages of ways count the even ground of `changed` as changed, and that of other tiles in `kept` no longer.
   void noteEven(const perception::TileSet& kept, const perception::TileSet& changed);
   /// Gives outputs of many tiles back; those of few are likely to be read again soon.
-  void dropMany() {
+  void dropIfMany() {
     constexpr std::size_t kFew = 400;
     if (outputs_.summaries.size() > kFew) dropAll();
   }
@@ -78,11 +78,11 @@ class TileStages {
   perception::Scene scene(const std::vector<Cloud>& clouds) const {
     return assembleScene(outputs_, params_.relation, viewsOf(clouds));
   }
-  /// The scene of the tiles that are held. `elsewhere`: other tiles of the map next to them; `unseen`: those that do
+  /// The scene of the tiles that are held. `elsewhere`: other tiles of the map next to them; `hidden`: those that do
   /// not count.
-  perception::SceneWindow window(const perception::TileSet& elsewhere, const perception::TileSet& unseen,
+  perception::SceneWindow window(const perception::TileSet& elsewhere, const perception::TileSet& hidden,
                                  const std::vector<Cloud>& clouds) const {
-    return assembleWindow(outputs_, elsewhere, unseen, params_.relation, viewsOf(clouds));
+    return assembleWindow(outputs_, elsewhere, hidden, params_.relation, viewsOf(clouds));
   }
   /// The cluxels of the tiles that are held, without their primitives.
   perception::SceneCluxels heldCluxels(const perception::TileSet& elsewhere) const {

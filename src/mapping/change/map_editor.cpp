@@ -2,6 +2,8 @@
 // Opens a map for changes and commits them.
 #include "mapping/change/map_editor.hpp"
 
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -28,6 +30,12 @@ namespace cluxel::mapping {
 namespace fs = std::filesystem;
 
 namespace {
+
+/// Tells a file from one that has taken its name; 0 when there is none.
+ino_t inodeOf(const fs::path& file) {
+  struct stat status {};
+  return ::stat(file.c_str(), &status) == 0 ? status.st_ino : 0;
+}
 
 /// Tiles that are decided in one commit. LMDB keeps the memory of as many pages as its largest transaction has written:
 /// after a large commit the file is opened again, which takes some milliseconds.
@@ -100,6 +108,7 @@ MapEditor::MapEditor(const fs::path& file, const ChangeParams& params, ProgressS
   } else {
     lock_.emplace(file_);
     environment_ = openForChange(file_);
+    inode_ = inodeOf(file_);
   }
   parsed_ = parseInputs(requireFinishedInputs(environment_->read(), file));
   inputs_hash_ = parsed_.inputs.hash().hex();
@@ -125,11 +134,17 @@ void MapEditor::setInputs(ParsedInputs inputs) {
   parsed_ = std::move(inputs);
 }
 
+/// What is in memory belongs to the file that was open.
+void MapEditor::reopen() {
+  environment_.reset();
+  environment_ = openForChange(file_);
+  if (inodeOf(file_) != inode_)
+    throw Error(ErrorKind::StoreUnavailable,
+                file_.string() + ": another program has replaced it meanwhile; run the command again");
+}
+
 rdf::WriteTransaction MapEditor::begin() {
-  if (std::exchange(is_worn_, false)) {
-    environment_.reset();
-    environment_ = openForChange(file_);
-  }
+  if (std::exchange(reopens_, false)) reopen();
   rdf::WriteTransaction transaction = environment_->write();
   const auto state = storedState(transaction);
   if (!state || !state->is_finished || state->inputs_hash != inputs_hash_)
@@ -212,8 +227,8 @@ void MapEditor::commit(rdf::WriteTransaction& transaction, const std::string& op
   const double started_s = secondsNow();
   StageClock clock(sink_);
   SemanticUpdate layers = decide(transaction, std::move(changes), clock);
-  const std::size_t update_size = layers.tiles_decided;
-  if (stages_) stages_->dropMany();
+  const bool is_large = layers.tiles_decided > kLargeCommit;
+  if (stages_) stages_->dropIfMany();
   returnFreeMemory();
   inputs_hash_ = parsed_.inputs.hash().hex();
   storeInputs(transaction, parsed_.inputs);
@@ -229,7 +244,7 @@ void MapEditor::commit(rdf::WriteTransaction& transaction, const std::string& op
   note(std::move(layers));
   if (params_.dry_run) return;
   transaction.commit();
-  is_worn_ = update_size > kLargeCommit;
+  reopens_ = is_large;
   try {
     report_.free_space = rdf::freeSpaceOf(environment_->read());
   } catch (const Error& error) {

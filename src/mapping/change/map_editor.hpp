@@ -2,6 +2,8 @@
 // A finished map opened for changes of its inputs. Every commit is the exact map of the changed inputs.
 #pragma once
 
+#include <sys/types.h>
+
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -104,6 +106,8 @@ class MapEditor {
   void note(SemanticUpdate update);
   void report(const rdf::ReadTransaction& transaction, const SemanticUpdate& update);
   void noteStatements() const;
+  /// Opens the file again. Throws Error (StoreUnavailable) when another has taken its name.
+  void reopen();
   UpdateParams layerParams() const { return {params_.threads, params_.max_window_share, params_.whole_cluxels}; }
 
   std::filesystem::path file_;
@@ -124,7 +128,8 @@ class MapEditor {
   TileSet touched_, changed_;    ///< in all commits
   ObjectDifference difference_;  ///< from before the first commit on
   bool has_begun_ = false;
-  bool is_worn_ = false;  ///< the file is to be opened again
+  bool reopens_ = false;  ///< the file is to be opened again
+  ino_t inode_ = 0;       ///< of the file that is open
   ChangeReport report_;
 };
 

@@ -23,7 +23,8 @@ struct MergeParams {
   ChangeParams change;
   std::optional<std::size_t> use;  ///< the map whose ontology, rules and model are used; absent: they must be equal
   bool force = false;              ///< replace a file that is there
-  /// A map that meets the others in more tiles is added scan by scan: what lies along a border is decided at once.
+  /// A map that meets the others in more tiles does not lend what it decided: what lies along a border is decided at
+  /// once.
   std::size_t max_seam = 100;
 };
 

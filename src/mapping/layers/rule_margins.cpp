@@ -95,11 +95,11 @@ void storeMargins(rdf::WriteTransaction& transaction, const rules::TileMargins& 
   });
   for (const std::string& key : left) transaction.eraseBlock(tables::kMargins, key);
   for (const auto& [tile, of_tile] : margins) put(transaction, tile, of_tile);
-  transaction.putIfDifferent(tables::kMeta, kStructureKey, tables::keyOf(rules.structure));
   storeNumbers(transaction, rules);
 }
 
 void storeNumbers(rdf::WriteTransaction& transaction, const rules::RuleSet& rules) {
+  transaction.putIfDifferent(tables::kMeta, kStructureKey, tables::keyOf(rules.structure));
   const RuleNumbers numbers = numbersOf(rules);
   std::string bytes(sizeof(double) + numbers.constants.size() * sizeof(std::uint64_t), '\0');
   std::memcpy(bytes.data(), &numbers.reach_m, sizeof(double));

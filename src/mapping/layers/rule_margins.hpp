@@ -19,7 +19,7 @@ void storeMargins(rdf::WriteTransaction& transaction, const rules::TileMargins& 
 void updateMargins(rdf::WriteTransaction& transaction, const rules::TileMargins& margins,
                    const perception::TileSet& tiles, const perception::TileSet& decided);
 
-/// The map is now decided by these rules, of the structure of those before.
+/// The map is now decided by these rules: stores what the margins of its tiles do not tell of them.
 void storeNumbers(rdf::WriteTransaction& transaction, const rules::RuleSet& rules);
 
 struct RuleChange {

@@ -75,7 +75,7 @@ class LocalUpdate {
         map_(strip != nullptr ? strip->shown : storedTiles(work.transaction)),
         former_summaries_(changes) {}
 
-  /// Absent when the whole map has to be computed; then nothing was written.
+  /// Absent when the whole map has to be computed; then no decision was written.
   std::optional<SemanticUpdate> run() {
     const std::optional<double> reach_m = rules::localReach(parsed_.rules).reach_m;
     std::optional<SemanticState> before = storedSemanticState(transaction_);
@@ -96,7 +96,7 @@ class LocalUpdate {
     more_ = lent_ != nullptr ? lent_->passed()
                              : tilesOfPassedObjects(transaction_, changedRays(before_.clouds, now_.clouds));
     const std::vector<SemanticState> maps = lent_ != nullptr ? lent_->statesOfMaps() : std::vector{before_};
-    WindowStatements statements(transaction_, parsed_, stages_, clouds_, changes_, maps, now_);
+    WindowStatements statements(transaction_, parsed_, stages_, clouds_, changes_, map_, maps, now_);
     for (; attempt_ < kMaxAttempts && depth_ < depths_.size() && !statements.needsWholeMap(); ++attempt_) {
       if (check_) check_(0);
       noteChanged(statements.tiles());
@@ -141,11 +141,12 @@ class LocalUpdate {
       return std::nullopt;
     }
     if (!statements.apply(window, change, *decision)) return std::nullopt;
-    if (strip_ != nullptr && !addWideRecords(*decision)) return std::nullopt;
+    if (strip_ != nullptr) addWideRecords(*decision);
     const std::vector<std::uint32_t> former = formerNumbers(window, stages_, former_summaries_);
-    const std::vector<rules::SemanticObject> wide = wideObjectsIn(transaction_, window, *decision, former);
-    needs_whole_map_ =
-        changesWideObjects(window, *decision, wide) || (lent_ != nullptr && !lent_->isCoveredBy(*decision, wide));
+    std::vector<rules::SemanticObject> wide = wideObjectsIn(transaction_, window, *decision, former);
+    needs_whole_map_ = (strip_ == nullptr && changesWideObjects(window, *decision, wide)) ||
+                       (lent_ != nullptr && !lent_->isCoveredBy(*decision, wide));
+    if (strip_ != nullptr) addOtherWideObjects(wide);
     if (needs_whole_map_) return std::nullopt;
     SemanticUpdate update = write({window, change, *decision, former, wide, input_of}, statements);
     updateMargins(transaction_, margins.found(), window.tiles, tilesDecidedWhole(window, *decision));
@@ -174,22 +175,33 @@ class LocalUpdate {
                           std::inserter(changes_.tiles, changes_.tiles.end()));
   }
 
-  /// Gives objects of whole classes a record as soon as a strip has some of them. False when the whole map has to be
-  /// computed for one.
-  bool addWideRecords(const WindowDecision& decision) {
+  /// Gives objects of whole classes a record as soon as a strip has some of them.
+  void addWideRecords(const WindowDecision& decision) {
     for (const rules::SemanticObject& object : decision.objects) {
       if (!object.is_class_wide || storedRecord(transaction_, object.id)) continue;
-      needs_whole_map_ = needs_whole_map_ || object.class_iri != rdf::vocabulary::clx("Ground");
       const ObjectRecord record{object.class_iri, object.rule_id, object.confidence, true, {}};
       transaction_.putBlock(tables::kObjects, tables::keyOf(object.id), toBytes(record));
       ++before_.objects;
     }
-    return !needs_whole_map_;
+  }
+
+  /// Objects of whole classes of which the strip has nothing are told again, too: what tiles that were not shown added
+  /// to them is gone.
+  void addOtherWideObjects(std::vector<rules::SemanticObject>& wide) const {
+    for (const ContentHash& id : strip_->wide) {
+      const auto record = storedRecord(transaction_, id);
+      if (!record || std::any_of(wide.begin(), wide.end(), [&](const auto& object) { return object.id == id; }))
+        continue;
+      rules::SemanticObject& object = wide.emplace_back();
+      object.id = id, object.is_class_wide = true;
+      object.class_iri = record->class_iri, object.rule_id = record->rule_id, object.confidence = record->confidence;
+    }
   }
 
   /// Leaves the layers as they are: other thresholds that decide nothing otherwise.
   SemanticUpdate unchanged() {
     storeNumbers(transaction_, parsed_.rules);
+    keepToldWays(transaction_);
     SemanticUpdate update;
     update.is_local = true;
     update.objects = before_.objects, update.cluxels = before_.cluxels, update.primitives = before_.primitives;
@@ -255,7 +267,7 @@ class LocalUpdate {
     writeLayers(transaction_, decided, changes_);
     if (strip_ != nullptr) eraseRetiredRows(decision);
     statements.store(transaction_, window);
-    if (!now_.statements.empty())
+    if (strip_ == nullptr && !now_.statements.empty())
       update.statements = toldOutcomes(rdf::QuadReader(static_cast<const rdf::ReadTransaction&>(transaction_)));
     if (check_) check_(0);
     if (strip_ == nullptr) inferFacts(transaction_, parsed_.inputs, sink_, check_);

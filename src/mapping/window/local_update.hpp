@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <set>
 #include <vector>
 
 #include "mapping/layers/semantic_state.hpp"
@@ -29,6 +30,7 @@ struct MapStrip {
   perception::TileSet anew;            ///< this strip, and what lies beside it: everything there counts as new
   RetiredThings retired;               ///< what the map knew in the strip, and not yet anew
   std::vector<SeenCloud> told_clouds;  ///< as the facts have them
+  std::set<ContentHash> wide;          ///< objects of whole classes that the map had
   rules::KnownSplits* splits = nullptr;
 };
 

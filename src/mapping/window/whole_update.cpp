@@ -6,7 +6,9 @@
 #include <set>
 
 #include "mapping/build/scan_store.hpp"
+#include "mapping/facts/told_ways.hpp"
 #include "mapping/layers/stored_layers.hpp"
+#include "mapping/map_state.hpp"
 #include "mapping/map_strips.hpp"
 #include "mapping/map_tables.hpp"
 #include "mapping/presence/object_rows.hpp"
@@ -14,6 +16,7 @@
 #include "mapping/statements/statement_facts.hpp"
 #include "mapping/window/former_objects.hpp"
 #include "mapping/window/map_window.hpp"
+#include "rdf/vocabulary.hpp"
 #include "rules/decide/local_reach.hpp"
 
 namespace cluxel::mapping {
@@ -68,9 +71,11 @@ class StripUpdate {
       for (const TileKey& tile : tiles) notePrimitives(tile);
       strip.retired = {}, strip.told_clouds = seenClouds(storedClouds(transaction_));
     }
-    // Else facts about an object of a whole class, which is gone, stay.
-    if (!std::all_of(wide_.begin(), wide_.end(), [&](const auto& id) { return storedRecord(transaction_, id); }))
-      return std::nullopt;
+    const auto is_there = [&](const ContentHash& id) {
+      const auto record = storedRecord(transaction_, id);
+      return record && !record->tiles.empty();
+    };
+    if (!std::all_of(strip.wide.begin(), strip.wide.end(), is_there)) return std::nullopt;  // else its facts stay
     eraseRowsWithoutObject(transaction_);
     inferFacts(transaction_, work_.parsed.inputs, work_.sink, work_.check);
     storeSplits(transaction_, splits);
@@ -97,9 +102,9 @@ class StripUpdate {
     storeSemanticState(transaction_, {0, 0, 0, former_.statements, seenClouds(storedClouds(transaction_))});
     for (const std::string_view table : {tables::kOverruled, tables::kStated}) eraseAll(transaction_, table);
     forEachRecord(transaction_, [&](const ContentHash& id, const ObjectRecord& record) {
-      if (record.is_class_wide) wide_.insert(id);
+      if (record.is_class_wide) strip.wide.insert(id);
     });
-    for (const ContentHash& id : wide_) transaction_.eraseBlock(tables::kObjects, tables::keyOf(id));
+    for (const ContentHash& id : strip.wide) transaction_.eraseBlock(tables::kObjects, tables::keyOf(id));
     retireTilesThatAreGone(strip);
   }
 
@@ -127,7 +132,7 @@ class StripUpdate {
     for (const TileLayer::PrimitiveHere& primitive : layer.primitives)
       if (!primitives_.contains(primitive.id)) strip.retired.primitives.insert(primitive.id);
     for (const TileLayer::Share& share : layer.shares) {
-      if (wide_.contains(share.object)) continue;
+      if (strip.wide.contains(share.object)) continue;
       const auto record = storedRecord(transaction_, share.object);
       const bool is_anew = record && std::all_of(record->tiles.begin(), record->tiles.end(),
                                                  [&](const TileKey& tile) { return strip.shown.contains(tile); });
@@ -145,9 +150,18 @@ class StripUpdate {
   SemanticState former_;
   TileSet all_;
   UpdateParams params_ = work_.params;
-  std::set<ContentHash> wide_;        ///< objects of whole classes that the map had
   std::set<ContentHash> primitives_;  ///< in tiles that are shown
 };
+
+bool makesWideObjectsButGround(const rules::RuleSet& rules) {
+  return std::any_of(rules.rules.begin(), rules.rules.end(), [](const rules::Rule& rule) {
+    return rule.class_iri != rdf::vocabulary::clx("Ground") &&
+           std::any_of(rule.nodes.begin(), rule.nodes.end(), [](const rules::TreeNode& node) {
+             const auto* accept = std::get_if<rules::AcceptLeaf>(&node.what);
+             return accept != nullptr && accept->merge_into == rules::MergeInto::Class;
+           });
+  });
+}
 
 std::optional<SemanticUpdate> updateInStrips(const LayerWork& work) {
   const std::optional<double> reach_m = rules::localReach(work.parsed.rules).reach_m;
@@ -155,9 +169,16 @@ std::optional<SemanticUpdate> updateInStrips(const LayerWork& work) {
   if (!former || !reach_m || *reach_m > perception::kTileSize_m ||
       likelyCluxels(work.transaction, *former) <= work.params.whole_cluxels)
     return std::nullopt;
+  const MapInputs inputs = storedInputs(work.transaction);
+  if (makesWideObjectsButGround(work.parsed.rules) || inputs.crs != work.parsed.inputs.crs ||
+      inputs.map_origin != work.parsed.inputs.map_origin)
+    return std::nullopt;
   writeOntology(work.transaction, work.parsed.inputs);
   auto update = StripUpdate(work, *std::move(former)).run();
-  if (update) update->after = storedMembers(work.transaction);
+  if (update)
+    update->after = storedMembers(work.transaction);
+  else
+    for (const std::string_view table : {tables::kTileLayers, tables::kObjects}) eraseAll(work.transaction, table);
   return update;
 }
 
@@ -194,6 +215,7 @@ std::optional<SemanticUpdate> updateInference(const LayerWork& work, const Outpu
     return std::nullopt;
   writeOntology(work.transaction, work.parsed.inputs);
   inferFacts(work.transaction, work.parsed.inputs, work.sink, work.check);
+  keepToldWays(work.transaction);
   SemanticUpdate update;
   update.is_local = true;
   update.objects = state->objects, update.cluxels = state->cluxels, update.primitives = state->primitives;

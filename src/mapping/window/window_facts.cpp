@@ -54,17 +54,18 @@ class FactWriting {
   rdf::TermId iri(const std::string& text) { return facts_.iri(text); }
 
   void replaceClouds() {
-    std::map<ContentHash, ContentHash> before;
-    for (const SeenCloud& cloud : sources_.clouds_before) before.emplace(cloud.id, cloud.content);
+    using Told = std::pair<ContentHash, std::optional<double>>;  // content and time
+    std::map<ContentHash, Told> before;
+    for (const SeenCloud& cloud : sources_.clouds_before) before.emplace(cloud.id, Told(cloud.content, cloud.time_s));
     const rdf::TermId root = iri(rdf::iriOfMapRoot()), has_cloud = facts_.property("hasCloud");
     const auto forget = [&](const ContentHash& id) {
       const rdf::TermId subject = iri(rdf::iriOfCloud(id));
       patch_.replace(subject);
       patch_.replace(root, has_cloud, subject);
     };
-    std::map<ContentHash, ContentHash> now;
-    for (const SeenCloud& cloud : seenClouds(sources_.clouds)) now.emplace(cloud.id, cloud.content);
-    for (const auto& [id, content] : before)
+    std::map<ContentHash, Told> now;
+    for (const SeenCloud& cloud : seenClouds(sources_.clouds)) now.emplace(cloud.id, Told(cloud.content, cloud.time_s));
+    for (const auto& [id, told] : before)
       if (!now.contains(id)) forget(id);
     for (const Cloud& cloud : sources_.clouds) {
       if (const auto known = before.find(cloud.id); known != before.end() && known->second == now.at(cloud.id))
@@ -83,7 +84,10 @@ class FactWriting {
       patch_.replace(subject);
     };
     for (const ContentHash& id : sources_.decided.change.gone) forget(id);
-    for (const ContentHash& id : sources_.retired.primitives) forget(id);
+    for (const ContentHash& id : sources_.retired.primitives) {
+      forget(id);
+      patch_.replace({}, facts_.property("hasPrimitive"), iri(rdf::iriOfPrimitive(id)));  // also of the ground
+    }
     for (const PrimitiveIndex i : primitivesByPlace(scene_)) {
       if (sources_.decided.change.is_dirty[i] == 0 || sources_.decided.decision.is_decided[i] == 0) continue;
       forget(scene_.primitives[i].id);
@@ -188,8 +192,7 @@ class FactWriting {
 
   std::vector<rdf::TermId> exchangedPrimitives() {
     std::vector<rdf::TermId> exchanged;
-    for (const std::set<ContentHash>* gone : {&sources_.decided.change.gone, &sources_.retired.primitives})
-      for (const ContentHash& id : *gone) exchanged.push_back(iri(rdf::iriOfPrimitive(id)));
+    for (const ContentHash& id : sources_.decided.change.gone) exchanged.push_back(iri(rdf::iriOfPrimitive(id)));
     for (PrimitiveIndex i = 0; i < scene_.primitives.size(); ++i)
       if (sources_.decided.decision.is_decided[i] != 0)
         exchanged.push_back(iri(rdf::iriOfPrimitive(scene_.primitives[i].id)));

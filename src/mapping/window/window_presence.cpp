@@ -59,7 +59,9 @@ WindowPresence updatePresenceIn(rdf::WriteTransaction& transaction, const Window
   std::vector<RayObserver*> observers{&rays};
   if (presence.observer() != nullptr) observers.push_back(presence.observer());
   passRays(facts.clouds, observers, [&](const Cloud& cloud) { return storedScan(transaction, cloud.id); });
-  for (const auto& [id, record] : facts.decided.decision.replaced)
+  std::set<ContentHash> former = facts.retired.objects;
+  for (const auto& [id, record] : facts.decided.decision.replaced) former.insert(id);
+  for (const ContentHash& id : former)
     for (const std::string_view table : {tables::kPresence, tables::kPassedRays})
       transaction.eraseBlock(table, tables::keyOf(id));
   WindowPresence result{presence.finish(transaction, Covered::Some), rays.finish(transaction, Covered::Some), {}};

@@ -90,8 +90,9 @@ struct WindowStatements::Touched {
 
 WindowStatements::WindowStatements(const rdf::ReadTransaction& transaction, const ParsedInputs& parsed,
                                    TileStages& stages, const std::vector<Cloud>& clouds, const OutputChanges& changes,
-                                   const std::vector<SemanticState>& before, const SemanticState& now)
-    : transaction_(transaction), parsed_(parsed), stages_(stages), clouds_(clouds) {
+                                   const TileSet& map_tiles, const std::vector<SemanticState>& before,
+                                   const SemanticState& now)
+    : transaction_(transaction), parsed_(parsed), stages_(stages), clouds_(clouds), map_(map_tiles) {
   const Former statements_before(before, now);
   if (statements_before.known.empty() && now.statements.empty()) return;
   statements_ = storedStatements(rdf::QuadReader(transaction));
@@ -212,7 +213,7 @@ bool WindowStatements::changesWholeObjects(const MapWindow& window, const Window
 }
 
 /// Whether most points of an object of a whole class may lie in a region. Of tiles near a change all points count
-/// against it; elsewhere such objects hold what they held before.
+/// against it; elsewhere such objects hold what they held before. Tiles that do not count could only add to the object.
 bool WindowStatements::mayTakeWideObject(const Statement& region, const MapWindow& window) const {
   if (region.kind != StatementKind::IgnoreRegion) return false;
   const TileSet& inside = places_.at(region.id());
@@ -225,7 +226,7 @@ bool WindowStatements::mayTakeWideObject(const Statement& region, const MapWindo
   };
   std::map<ContentHash, Points> points;
   for (const WideTile& tile : storedWideTiles(transaction_)) {
-    if (near_change_.contains(tile.key)) continue;
+    if (near_change_.contains(tile.key) || !map_.contains(tile.key)) continue;
     for (const WidePart& part : tile.parts) {
       Points& own = points[part.object];
       own.all += part.sums.point_count;

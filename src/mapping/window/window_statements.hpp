@@ -19,10 +19,10 @@ namespace cluxel::mapping {
 
 class WindowStatements {
  public:
-  /// `before`: the map as it was, or the maps that were joined; a statement of one may be about what another has.
-  /// `now`: the clouds and statements that there are. The references must outlive it.
+  /// `map`: the tiles that count. `before`: the map as it was, or the maps that were joined; a statement of one may be
+  /// about what another has. `now`: the clouds and statements that there are. The references must outlive it.
   WindowStatements(const rdf::ReadTransaction& transaction, const ParsedInputs& parsed, TileStages& stages,
-                   const std::vector<Cloud>& clouds, const OutputChanges& changes,
+                   const std::vector<Cloud>& clouds, const OutputChanges& changes, const perception::TileSet& map,
                    const std::vector<SemanticState>& before, const SemanticState& now);
 
   /// The tiles in which all has to be decided anew because of statements; they count as changed.
@@ -54,6 +54,7 @@ class WindowStatements {
   const ParsedInputs& parsed_;
   TileStages& stages_;
   const std::vector<Cloud>& clouds_;
+  const perception::TileSet& map_;
   std::vector<Statement> statements_;  ///< ascending by id
   std::vector<ContentHash> withdrawn_;
   StatementTiles places_;                 ///< of the statements that there are

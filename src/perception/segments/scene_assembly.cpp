@@ -282,9 +282,9 @@ SceneSeeds seedsOf(const TileOutputs& tiles) {
   return seeds;
 }
 
-SceneWindow assembleWindow(const TileOutputs& tiles, const TileSet& elsewhere, const TileSet& unseen,
+SceneWindow assembleWindow(const TileOutputs& tiles, const TileSet& elsewhere, const TileSet& hidden,
                            const RelationParams& params, std::vector<SceneView> views) {
-  const TileSet apart = unionOf(elsewhere, unseen);
+  const TileSet apart = unionOf(elsewhere, hidden);
   checkFit(tiles, apart);
   SceneWindow window;
   Scene& scene = window.scene;

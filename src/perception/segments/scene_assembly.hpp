@@ -49,9 +49,9 @@ struct SceneWindow {
   std::vector<char> is_cut;  ///< by primitive: it goes on in a tile that is not held
 };
 /// The same for some tiles of a map. `elsewhere`: the map's other tiles, as far as they are next to those that are
-/// held; of them only the ground is read. Cut primitives have the ids and attributes of what is held of them. `unseen`:
+/// held; of them only the ground is read. Cut primitives have the ids and attributes of what is held of them. `hidden`:
 /// tiles next to them that do not count, as if nothing led there.
-SceneWindow assembleWindow(const TileOutputs& tiles, const TileSet& elsewhere, const TileSet& unseen,
+SceneWindow assembleWindow(const TileOutputs& tiles, const TileSet& elsewhere, const TileSet& hidden,
                            const RelationParams& params, std::vector<SceneView> views = {});
 
 /// The cluxels of the same scene alone, without their primitives, with the same errors. Cost: about 100 ns a cluxel.
