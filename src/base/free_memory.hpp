@@ -12,7 +12,7 @@ void freeMemory(std::vector<Values>&... vectors) {
 }
 
 /// Gives memory that is free, but was kept for reuse, back to the system, when it is more than some 200 MB. After a
-/// batch the next one begins with the memory that it needs. Cost: about 0.3 ms a MB, mostly when it is needed again.
+/// batch the next one begins with the memory that it needs. The system clears the pages when they are needed again.
 void returnFreeMemory();
 
 }  // namespace cluxel

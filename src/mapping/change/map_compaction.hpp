@@ -20,8 +20,7 @@ void compactMap(const std::filesystem::path& map, rdf::CopiedPages pages = rdf::
 inline constexpr double kMaxFreeShare = 0.05, kMaxFreeShareOfChanged = 0.25;
 
 /// Compacts a map when that frees more than this share of it, and more than a mebibyte. So the cost follows the
-/// changes that left the space. Pages of indexes
-/// are filled when that alone would free as much. Where it fails, the map
+/// changes that left the space. Pages of indexes are filled when that alone would free as much. Where it fails, the map
 /// stays larger, and a note tells why.
 void compactIfSparse(const std::filesystem::path& map, ProgressSink& sink, double max_free_share = kMaxFreeShare);
 /// The same when what it would free is known.

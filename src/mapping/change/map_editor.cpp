@@ -38,7 +38,7 @@ ino_t inodeOf(const fs::path& file) {
 }
 
 /// Tiles that are decided in one commit. LMDB keeps the memory of as many pages as its largest transaction has written:
-/// after a large commit the file is opened again, which takes some milliseconds.
+/// after a large commit the file is opened again.
 constexpr std::size_t kLargeCommit = 200;
 
 /// A token in the cache of a commit tells whether the commit is still the newest.

@@ -265,7 +265,7 @@ class LocalUpdate {
     writeWindowFacts(transaction_, {parsed_, stages_, clouds_, strip_ != nullptr ? strip_->told_clouds : before_.clouds,
                                     decided, statements, retired, ways ? &*ways : nullptr, touched, params_.threads});
     writeLayers(transaction_, decided, changes_);
-    if (strip_ != nullptr) eraseRetiredRows(decision);
+    if (strip_ != nullptr) eraseRetiredRecords(decision);
     statements.store(transaction_, window);
     if (strip_ == nullptr && !now_.statements.empty())
       update.statements = toldOutcomes(rdf::QuadReader(static_cast<const rdf::ReadTransaction&>(transaction_)));
@@ -278,13 +278,11 @@ class LocalUpdate {
     return update;
   }
 
-  /// Those of former objects that the strip did not make again.
-  void eraseRetiredRows(const WindowDecision& decision) {
+  /// Of former objects that the strip did not make again. Their rows of presence are gone already.
+  void eraseRetiredRecords(const WindowDecision& decision) {
     std::set<ContentHash> gone = strip_->retired.objects;
     for (const rules::SemanticObject& object : decision.objects) gone.erase(object.id);
-    for (const ContentHash& id : gone)
-      for (const std::string_view table : {tables::kObjects, tables::kPresence, tables::kPassedRays})
-        transaction_.eraseBlock(table, tables::keyOf(id));
+    for (const ContentHash& id : gone) transaction_.eraseBlock(tables::kObjects, tables::keyOf(id));
   }
 
   std::vector<ObjectMembers> replacedObjects(const MapWindow& window, const WindowDecision& decision) {

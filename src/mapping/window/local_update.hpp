@@ -28,7 +28,7 @@ struct LayerWork {
 struct MapStrip {
   perception::TileSet shown;           ///< the tiles of this strip and of those before
   perception::TileSet anew;            ///< this strip, and what lies beside it: everything there counts as new
-  RetiredThings retired;               ///< what the map knew in the strip, and not yet anew
+  RetiredThings retired;               ///< what former layers of the strip name, and no strip has made again
   std::vector<SeenCloud> told_clouds;  ///< as the facts have them
   std::set<ContentHash> wide;          ///< objects of whole classes that the map had
   rules::KnownSplits* splits = nullptr;

@@ -29,7 +29,7 @@ GoesOn keptBy(const rdf::ReadTransaction& transaction, const SemanticUpdate& upd
 /// What may have changed since the layers were made.
 enum class ChangedInputs : std::uint8_t {
   Scans,      ///< scans, poses and statements
-  Inference,  ///< only SPARQL rules, and the ontology in what rules do not see: not its classes and their parts
+  Inference,  ///< only SPARQL rules, or an ontology with the same classes, superclasses and parts
   Rules,      ///< all these, and the rules that decide about objects
   Any,        ///< classes, model or settings too
 };

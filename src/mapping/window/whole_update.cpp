@@ -49,8 +49,8 @@ class StripUpdate {
     params_.max_window_share = 2;  // a window never gives way to the whole map
   }
 
-  /// Absent when a strip cannot be decided alone. Then layers of both kinds are there, which a run over the whole map
-  /// replaces.
+  /// Absent when a strip cannot be decided alone. Then former and new layers are mixed; a run over the whole map
+  /// replaces both.
   std::optional<SemanticUpdate> run() {
     SemanticUpdate update;
     rules::KnownSplits splits = storedSplits(transaction_);

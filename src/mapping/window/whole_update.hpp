@@ -7,8 +7,7 @@
 namespace cluxel::mapping {
 
 /// Computes all layers and facts. A map that had layers before and is larger than UpdateParams::whole_cluxels is
-/// decided strip by strip, with the same result, when all rules have a reach. Memory: some 600 bytes a cluxel at once;
-/// of strips that of one with its border, and some 30 bytes a cluxel for the lists of objects.
+/// decided strip by strip, with the same result, when all rules have a reach. Memory: decision 0121.
 SemanticUpdate updateAll(const LayerWork& work, const OutputChanges& changes);
 
 /// Other SPARQL rules, or another ontology of the same classes: only what is inferred changes. Absent when something

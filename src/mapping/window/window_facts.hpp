@@ -17,7 +17,8 @@
 
 namespace cluxel::mapping {
 
-/// Things of a map that are decided anew as a whole: what they are now is told elsewhere.
+/// Former objects and primitives of tiles in which everything is decided anew: their facts go unless they are told
+/// again.
 struct RetiredThings {
   std::set<ContentHash> objects, primitives;
 };
