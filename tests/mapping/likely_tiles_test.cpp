@@ -66,7 +66,7 @@ TEST(LikelyTiles, FollowThingsFromLayerToLayer) {
         << layers;
 }
 
-/// What is one primitive is reached as a whole.
+/// What is one primitive is reached as a whole, in one layer.
 TEST(LikelyTiles, FollowPrimitivesThroughTiles) {
   const auto environment = rdf::Environment::temporary();
   rdf::WriteTransaction transaction = environment->write();
@@ -81,7 +81,7 @@ TEST(LikelyTiles, FollowPrimitivesThroughTiles) {
     transaction.putBlock(tables::kTileLayers, tables::keyOf(layer.key), toBytes(layer));
   }
   storeTiles(transaction, row);
-  EXPECT_EQ(likelyTiles(transaction, storedTiles(transaction), {{0, 0}}, {kGround}, 2, 4), row);
+  EXPECT_EQ(likelyTiles(transaction, storedTiles(transaction), {{0, 0}}, {kGround}, 2, 1), row);
 }
 
 TEST(LikelyTiles, LeaveOutTheGroundByTheShippedRules) {

@@ -263,12 +263,12 @@ std::map<ContentHash, std::uint64_t> tracesOf(const Scene& scene, const std::vec
 }
 
 Glued gluedOf(const ChangedScene& change, const ReasoningResult& before, const Window& window,
-              const LocalOutcome& outcome, std::uint32_t j, const RuleSet& rules) {
+              const LocalOutcome& outcome, const RuleSet& rules) {
   Glued glued;
   const std::map<ContentHash, PrimitiveIndex> now = numbersOf(change.after);
   std::set<ContentHash> decided;
   for (PrimitiveIndex i = 0; i < outcome.layer.size(); ++i)
-    if (outcome.layer[i] <= j) decided.insert(window.scene.primitives[i].id);
+    if (outcome.layer[i] <= kLastDecidedLayer) decided.insert(window.scene.primitives[i].id);
   const auto isDecided = [&](const Scene& scene, PrimitiveIndex i) {
     return decided.count(scene.primitives[i].id) > 0;
   };
@@ -302,7 +302,7 @@ Glued gluedOf(const ChangedScene& change, const ReasoningResult& before, const W
   for (const auto& [id, trace] : tracesOf(change.before, before.traces))
     if (now.count(id) > 0) glued.traces[id] = trace;
   for (PrimitiveIndex i = 0; i < outcome.result.traces.size(); ++i)
-    if (outcome.layer[i] <= j) glued.traces[window.scene.primitives[i].id] = outcome.result.traces[i];
+    if (outcome.layer[i] <= kLastDecidedLayer) glued.traces[window.scene.primitives[i].id] = outcome.result.traces[i];
   return glued;
 }
 

@@ -53,7 +53,7 @@ struct Glued {
   std::map<ContentHash, std::uint64_t> traces;  ///< by primitive
 };
 Glued gluedOf(const ChangedScene& change, const ReasoningResult& before, const Window& window,
-              const LocalOutcome& outcome, std::uint32_t j, const RuleSet& rules);
+              const LocalOutcome& outcome, const RuleSet& rules);
 
 std::map<ContentHash, std::uint64_t> tracesOf(const Scene& scene, const std::vector<std::uint64_t>& traces);
 

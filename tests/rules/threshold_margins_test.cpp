@@ -45,9 +45,9 @@ void expectChangesAround(const Scene& scene, const NotedRun& before, const Noted
   const std::vector<char> is_open(is_dirty.size(), 0);
   const std::vector<std::optional<std::uint64_t>> stored(before.result.traces.begin(), before.result.traces.end());
   const auto outcome = decideLocally({scene, is_dirty, is_open, {}, stored}, changed, {}, reach_m);
-  if (!outcome || outcome->seams.empty()) return;
+  if (!outcome) return;
   for (std::size_t i = 0; i < is_dirty.size(); ++i)
-    if (outcome->layer[i] > outcome->seams.front().first) {
+    if (outcome->layer[i] > kLastDecidedLayer) {
       ASSERT_EQ(after.result.traces[i], before.result.traces[i]) << "layer " << outcome->layer[i];
     }
 }

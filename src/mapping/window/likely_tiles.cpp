@@ -5,7 +5,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <unordered_map>
-#include <unordered_set>
 #include <utility>
 #include <vector>
 
@@ -65,27 +64,28 @@ class LayerSearch {
   }
   /// Some primitives, which have cluxels in these tiles, are layer 0.
   void beginWith(const std::set<ContentHash>& primitives, const TileSet& tiles) {
-    primitives_.insert(primitives.begin(), primitives.end());
+    for (const ContentHash& primitive : primitives) layer_of_.emplace(primitive, 0);
     for (const TileKey& tile : tiles) partsOf(tile);
   }
 
   /// The tiles within reach of the first `count` layers.
   TileSet tilesOfFirst(std::uint32_t count) {
     TileSet found;
-    for (std::uint32_t layer = 0; layer < count && !reached_.empty(); ++layer)
-      for (const auto& [tile, box] : std::exchange(reached_, {}))
-        for (const TileKey& near : perception::ringOf(tile))
-          if (map_.contains(near) && boxOfTile(near).exteriorDistance(box) <= reach_m_) {
-            found.insert(near);
-            lookIn(near, box);
-          }
+    for (; layer_ < count; ++layer_)
+      while (!reached_[layer_].empty())
+        for (const auto& [tile, box] : std::exchange(reached_[layer_], {}))
+          for (const TileKey& near : perception::ringOf(tile))
+            if (map_.contains(near) && boxOfTile(near).exteriorDistance(box) <= reach_m_) {
+              found.insert(near);
+              lookIn(near, box);
+            }
     return found;
   }
 
  private:
   using Place = std::pair<TileKey, std::size_t>;
 
-  /// What is layer 0, or part of a reached primitive, counts as reached when its tile is read.
+  /// A part of a reached primitive is reached, too, when its tile is read: in the layer of the primitive, or now.
   std::vector<Part>& partsOf(const TileKey& tile) {
     const auto [place, is_new] = parts_.try_emplace(tile);
     std::vector<Part>& parts = place->second;
@@ -94,7 +94,10 @@ class LayerSearch {
     parts = partsIn(*layer, lone_objects_);
     for (std::size_t i = 0; i < parts.size(); ++i) {
       places_[parts[i].primitive].emplace_back(tile, i);
-      if (begun_.contains(tile) || primitives_.contains(parts[i].primitive)) reach(tile, parts[i]);
+      if (const auto reached = layer_of_.find(parts[i].primitive); reached != layer_of_.end())
+        reach(tile, parts[i], std::max(reached->second, layer_));
+      else if (begun_.contains(tile))
+        reach(tile, parts[i], layer_);
     }
     return parts;
   }
@@ -102,23 +105,26 @@ class LayerSearch {
   void lookIn(const TileKey& tile, const Eigen::AlignedBox2d& from) {
     for (Part& part : partsOf(tile))
       if (!part.is_reached && part.box.exteriorDistance(from) <= reach_m_)
-        for (const auto& [other, number] : places_.at(part.primitive)) reach(other, parts_.at(other)[number]);
+        for (const auto& [other, number] : places_.at(part.primitive))
+          reach(other, parts_.at(other)[number], layer_ + 1);
   }
 
-  void reach(const TileKey& tile, Part& part) {
+  void reach(const TileKey& tile, Part& part, std::uint32_t layer) {
     if (std::exchange(part.is_reached, true)) return;
-    primitives_.insert(part.primitive);
-    reached_.emplace_back(tile, part.box);
+    layer_of_.emplace(part.primitive, layer);
+    reached_[layer].emplace_back(tile, part.box);
   }
 
   const rdf::ReadTransaction& transaction_;
   const std::set<ContentHash>& lone_objects_;
   double reach_m_;
   TileSet map_, begun_;
-  std::map<TileKey, std::vector<Part>> parts_;                    ///< of the tiles that were read
-  std::unordered_map<ContentHash, std::vector<Place>> places_;    ///< of the parts of each primitive
-  std::unordered_set<ContentHash> primitives_;                    ///< that were reached
-  std::vector<std::pair<TileKey, Eigen::AlignedBox2d>> reached_;  ///< in the last layer
+  std::map<TileKey, std::vector<Part>> parts_;                  ///< of the tiles that were read
+  std::unordered_map<ContentHash, std::vector<Place>> places_;  ///< of the parts of each primitive
+  std::unordered_map<ContentHash, std::uint32_t> layer_of_;     ///< of the primitives that were reached
+  std::uint32_t layer_ = 0;                                     ///< whose surroundings are looked at
+  /// By layer the parts whose surroundings have to be looked at.
+  std::map<std::uint32_t, std::vector<std::pair<TileKey, Eigen::AlignedBox2d>>> reached_;
 };
 
 }  // namespace

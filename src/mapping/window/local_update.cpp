@@ -3,7 +3,6 @@
 #include "mapping/window/local_update.hpp"
 
 #include <algorithm>
-#include <array>
 #include <unordered_map>
 
 #include "mapping/build/scan_store.hpp"
@@ -37,11 +36,9 @@ using perception::TileKey;
 using perception::TileSet;
 
 constexpr int kRings = 1;  ///< of tiles around the changed ones that a window holds at least
-/// The number of layers around a change that have to lie in the window; more where that is not enough. The longer the
-/// border of a change, the likelier that five layers are too few at some place. The numbers were chosen, not measured.
-using Depths = std::array<std::uint32_t, 4>;
-constexpr Depths kDepths{5, 8, 13, 21}, kDepthsOfLargeChanges{6, 8, 13, 21};
-constexpr std::size_t kLargeChange = 100;  ///< tiles
+/// The number of layers around a change that the first window is to hold: those of the seam, and one more because what
+/// lies beside a change may come out otherwise, unless the window would be too large with it.
+constexpr std::uint32_t kLayersOfSeam = rules::kLastLayer + 1;
 constexpr std::size_t kMaxAttempts = 40;
 constexpr std::size_t kNarrowAttempts = 6;  ///< later ones add the tiles around, too: each attempt costs a window
 
@@ -97,7 +94,7 @@ class LocalUpdate {
                              : tilesOfPassedObjects(transaction_, changedRays(before_.clouds, now_.clouds));
     const std::vector<SemanticState> maps = lent_ != nullptr ? lent_->statesOfMaps() : std::vector{before_};
     WindowStatements statements(transaction_, parsed_, stages_, clouds_, changes_, map_, maps, now_);
-    for (; attempt_ < kMaxAttempts && depth_ < depths_.size() && !statements.needsWholeMap(); ++attempt_) {
+    for (; attempt_ < kMaxAttempts && !statements.needsWholeMap(); ++attempt_) {
       if (check_) check_(0);
       noteChanged(statements.tiles());
       if (attempt_ == 0) beginWithLikelyTiles();
@@ -124,7 +121,8 @@ class LocalUpdate {
     if (strip_ != nullptr) anew.insert(strip_->anew.begin(), strip_->anew.end());
     const WindowChange change = changeIn(window, changes_, anew, reach_m_, input_of);
     const rules::LocalInput input = localInputOf(window, change, lone_objects_, reach_m_);
-    if (isTooSmall(window, change, input.likely.layers)) return std::nullopt;
+    if (isTooSmall(tilesBeyond(window, change, changes_, transaction_, input.likely.layers), window))
+      return std::nullopt;
     rules::ThresholdMargins margins(window.scene, parsed_.rules);
     rules::ReasoningContext context;
     context.threads = params_.threads;
@@ -132,12 +130,16 @@ class LocalUpdate {
     context.keeps_paths = false;
     if (strip_ != nullptr) context.splits = strip_->splits;
     rules::LocalRun rules_run(input, parsed_.rules, context, reach_m_);
-    if (rules_run.layers() != input.likely.layers && isTooSmall(window, change, rules_run.layers()))
+    if (rules_run.layers() != input.likely.layers &&
+        isTooSmall(tilesBeyond(window, change, changes_, transaction_, rules_run.layers()), window))
       return std::nullopt;
     sink_.progress("scene", window.scene.primitives.size(), window.scene.primitives.size());
-    auto decision = decideIn(window, change, transaction_, rules_run);
+    TileSet lacking;
+    auto decision = decideIn(window, change, transaction_, rules_run, lacking);
     if (!decision) {
-      while (++depth_ < depths_.size() && !isTooSmall(window, change, rules_run.layers())) continue;
+      lacking.merge(tilesBeyond(window, change, changes_, transaction_, rules_run.layers()));
+      std::erase_if(lacking, [&](const TileKey& tile) { return !map_.contains(tile) || window.tiles.contains(tile); });
+      needs_whole_map_ = !isTooSmall(lacking, window);
       return std::nullopt;
     }
     if (!statements.apply(window, change, *decision)) return std::nullopt;
@@ -156,16 +158,19 @@ class LocalUpdate {
 
   /// A first window that is large enough spares an attempt.
   void beginWithLikelyTiles() {
-    if (changes_.tiles.size() > kLargeChange) depths_ = kDepthsOfLargeChanges;
     lone_objects_ = objectsOfLoneSeeds(parsed_.rules);
-    more_.merge(likelyTiles(transaction_, map_, changes_.tiles, lone_objects_, reach_m_, depths_.front()));
+    TileSet likely;
+    for (std::uint32_t layers = kLayersOfSeam + 1; layers >= kLayersOfSeam; --layers) {
+      likely = likelyTiles(transaction_, map_, changes_.tiles, lone_objects_, reach_m_, layers);
+      if (static_cast<double>(likely.size()) <= params_.max_window_share * static_cast<double>(map_.size())) break;
+    }
+    more_.merge(likely);
   }
 
-  /// Whether the window lacks tiles of the first layers. The next one has them.
-  bool isTooSmall(const MapWindow& window, const WindowChange& change, const std::vector<std::uint32_t>& layers) {
-    const TileSet beyond = tilesBeyond(window, change, changes_, transaction_, layers, depths_[depth_]);
+  /// Whether the window lacks tiles. The next one has them.
+  bool isTooSmall(const TileSet& beyond, const MapWindow& window) {
     more_ = perception::unionOf(std::move(more_), attempt_ < kNarrowAttempts ? beyond : perception::grown(beyond));
-    needs_whole_map_ = attempt_ == 0 && depth_ == 0 && willBeTooLarge(window.tiles, beyond);
+    needs_whole_map_ = attempt_ == 0 && willBeTooLarge(window.tiles, beyond);
     return needs_whole_map_ || !beyond.empty();
   }
 
@@ -320,8 +325,7 @@ class LocalUpdate {
   double reach_m_ = 0;
   std::set<ContentHash> lone_objects_;
   TileSet more_;  ///< tiles that the window holds beside those around the change
-  Depths depths_ = kDepths;
-  std::size_t attempt_ = 0, depth_ = 0;
+  std::size_t attempt_ = 0;
   bool needs_whole_map_ = false;
   std::vector<Cloud> clouds_;
   SemanticState before_, now_;

@@ -3,6 +3,8 @@
 #include "mapping/window/window_decision.hpp"
 
 #include <algorithm>
+#include <iterator>
+#include <utility>
 
 #include "mapping/layers/primitive_tiles.hpp"
 #include "mapping/layers/stored_layers.hpp"
@@ -23,29 +25,28 @@ class Deciding {
       number_.emplace(window.scene.primitives[i].id, i);
   }
 
-  /// Objects may reach across the nearest seam: then a farther one may do.
-  std::optional<WindowDecision> take(std::optional<rules::LocalOutcome> outcome) {
-    if (!outcome) return std::nullopt;
-    layer_ = std::move(outcome->layer);
-    if (outcome->seams.empty()) outcome->seams.push_back({0, 0});
-    for (const rules::Seam& seam : outcome->seams) {
-      seam_ = seam;
-      if (auto decision = takeUpToSeam(outcome->result)) return decision;
+  /// What is known too little about counts as changed, too, until all that is decided is known as a whole.
+  std::optional<WindowDecision> take(rules::LocalRun& run, TileSet& lacking) {
+    for (bool is_found = run.decide(); is_found; is_found = run.decideWith(unsure_)) {
+      unsure_.clear();
+      layer_ = run.layers();
+      WindowDecision decision = decided(run.result());
+      if (!findReplaced(decision, lacking) || !lacking.empty()) break;
+      if (unsure_.empty()) return decision;
     }
     return std::nullopt;
   }
 
  private:
-  std::optional<WindowDecision> takeUpToSeam(const rules::ReasoningResult& result) {
+  WindowDecision decided(const rules::ReasoningResult& result) {
     WindowDecision decision;
     decision.traces = result.traces;
-    for (const std::uint32_t layer : layer_) decision.is_decided.push_back(layer <= seam_.first ? 1 : 0);
+    for (const std::uint32_t layer : layer_) decision.is_decided.push_back(layer <= rules::kLastDecidedLayer ? 1 : 0);
     for (const rules::SemanticObject& object : result.objects) {
       if (!hasDecided(object, decision.is_decided)) continue;
-      if (!object.is_class_wide && !isSureAsAWhole(object)) return std::nullopt;
+      if (!object.is_class_wide) noteUnsure(object);
       keepDecided(object, decision);
     }
-    if (!findReplaced(decision)) return std::nullopt;
     return decision;
   }
 
@@ -56,12 +57,10 @@ class Deciding {
     });
   }
 
-  bool isSureAsAWhole(const rules::SemanticObject& object) const {
-    return std::all_of(object.parts.begin(), object.parts.end(), [&](const rules::ObjectPart& part) {
-      return std::all_of(part.primitives.begin(), part.primitives.end(), [&](PrimitiveIndex primitive) {
-        return layer_[primitive] <= seam_.last && change_.is_open[primitive] == 0;
-      });
-    });
+  void noteUnsure(const rules::SemanticObject& object) {
+    for (const rules::ObjectPart& part : object.parts)
+      for (const PrimitiveIndex primitive : part.primitives)
+        if (layer_[primitive] == rules::kNoLayer) unsure_.push_back(primitive);
   }
 
   void keepDecided(rules::SemanticObject object, WindowDecision& decision) const {
@@ -81,35 +80,42 @@ class Deciding {
     const auto now = number_.find(primitive);
     return now != number_.end() && decision.is_decided[now->second] != 0;
   }
-  /// Whether its outcome in this run is known to be that of a run over the whole map.
-  bool isSure(const ContentHash& primitive) const {
-    if (change_.gone.contains(primitive)) return true;
-    const auto now = number_.find(primitive);
-    return now != number_.end() && layer_[now->second] <= seam_.last;
-  }
-
-  /// False when an object reaches out of what is sure.
-  bool findReplaced(WindowDecision& decision) const {
-    std::map<ContentHash, bool> is_sure;
+  /// Former objects of what is decided. What they have beyond the layers is not known, and what lies beyond the window
+  /// is lacking. False when the map has no record of one.
+  bool findReplaced(WindowDecision& decision, TileSet& lacking) {
+    std::map<ContentHash, std::vector<std::pair<TileKey, ContentHash>>> parts;  // primitives of objects, by tile
     std::set<ContentHash> concerned;
     for (const auto& [tile, layer] : window_.layers)
       for (const TileLayer::Share& share : layer.shares)
         for (const std::uint32_t component : share.components) {
           const ContentHash& primitive = layer.primitives[component].id;
           if (isConcerned(primitive, decision)) concerned.insert(share.object);
-          bool& sure = is_sure.try_emplace(share.object, true).first->second;
-          sure = sure && isSure(primitive);
+          if (!isKnown(primitive)) parts[share.object].emplace_back(tile, primitive);
         }
+    PrimitiveTiles tiles(transaction_);
+    const auto is_inside = [&](const TileKey& tile) { return window_.tiles.contains(tile); };
     for (const ContentHash& id : concerned) {
       const std::optional<ObjectRecord> record = storedRecord(transaction_, id);
       if (!record) return false;
       if (record->is_class_wide) continue;
-      const bool is_inside = std::all_of(record->tiles.begin(), record->tiles.end(),
-                                         [&](const auto& tile) { return window_.tiles.contains(tile); });
-      if (!is_inside || !is_sure.at(id)) return false;
+      std::copy_if(record->tiles.begin(), record->tiles.end(), std::inserter(lacking, lacking.end()),
+                   [&](const TileKey& tile) { return !is_inside(tile); });
+      for (const auto& [tile, primitive] : parts[id]) {
+        if (const auto now = number_.find(primitive); now != number_.end())
+          unsure_.push_back(now->second);
+        else
+          lacking.merge(tiles.beyond({tile}, {primitive}, is_inside));  // it is cut
+      }
       decision.replaced.emplace(id, *record);
     }
     return true;
+  }
+
+  /// Whether it is gone, or its outcome in this run is that of a run over the whole map.
+  bool isKnown(const ContentHash& primitive) const {
+    if (change_.gone.contains(primitive)) return true;
+    const auto now = number_.find(primitive);
+    return now != number_.end() && layer_[now->second] != rules::kNoLayer;
   }
 
   const MapWindow& window_;
@@ -117,7 +123,7 @@ class Deciding {
   const rdf::ReadTransaction& transaction_;
   std::map<ContentHash, PrimitiveIndex> number_;
   std::vector<std::uint32_t> layer_;
-  rules::Seam seam_;  ///< layers up to its first are decided anew; up to its last the outcome is known
+  std::vector<PrimitiveIndex> unsure_;  ///< beyond the layers, though objects tie it to what is decided
 };
 
 /// By primitive: whether it was part of an object that strata of lone seeds made.
@@ -149,9 +155,8 @@ rules::LocalInput localInputOf(const MapWindow& window, const WindowChange& chan
 }
 
 TileSet tilesBeyond(const MapWindow& window, const WindowChange& change, const OutputChanges& changes,
-                    const rdf::ReadTransaction& transaction, const std::vector<std::uint32_t>& layers,
-                    std::uint32_t depth) {
-  const auto isShort = [&](PrimitiveIndex i) { return layers[i] < depth && change.is_open[i] != 0; };
+                    const rdf::ReadTransaction& transaction, const std::vector<std::uint32_t>& layers) {
+  const auto isShort = [&](PrimitiveIndex i) { return layers[i] != rules::kNoLayer && change.is_open[i] != 0; };
   PrimitiveTiles tiles(transaction);
   const auto is_inside = [&](const TileKey& tile) { return window.first_cluxel.contains(tile); };
   TileSet beyond;
@@ -171,8 +176,9 @@ TileSet tilesBeyond(const MapWindow& window, const WindowChange& change, const O
 }
 
 std::optional<WindowDecision> decideIn(const MapWindow& window, const WindowChange& change,
-                                       const rdf::ReadTransaction& transaction, rules::LocalRun& run) {
-  return Deciding(window, change, transaction).take(run.decide());
+                                       const rdf::ReadTransaction& transaction, rules::LocalRun& run,
+                                       TileSet& lacking) {
+  return Deciding(window, change, transaction).take(run, lacking);
 }
 
 }  // namespace cluxel::mapping

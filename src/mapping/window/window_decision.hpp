@@ -39,14 +39,15 @@ struct DecidedWindow {
 rules::LocalInput localInputOf(const MapWindow& window, const WindowChange& change,
                                const std::set<ContentHash>& lone_objects, double reach_m);
 
-/// The map's tiles beyond the window that hold, or lie within reach of, open primitives in the first `depth` layers
-/// around the change. None when the window is large enough to look for a seam there.
+/// The map's tiles beyond the window that hold, or lie within reach of, open primitives in layers around the change.
+/// None when the window is large enough to look for a seam.
 perception::TileSet tilesBeyond(const MapWindow& window, const WindowChange& change, const OutputChanges& changes,
-                                const rdf::ReadTransaction& transaction, const std::vector<std::uint32_t>& layers,
-                                std::uint32_t depth);
+                                const rdf::ReadTransaction& transaction, const std::vector<std::uint32_t>& layers);
 
-/// Decides the window by a run over it. Absent when the window is too small to tell what the change leads to.
+/// Decides the window by a run over it. Absent when the window is too small to tell what the change leads to: it lacks
+/// tiles beyond the layers that the run has then, or those that are added to `lacking`.
 std::optional<WindowDecision> decideIn(const MapWindow& window, const WindowChange& change,
-                                       const rdf::ReadTransaction& transaction, rules::LocalRun& run);
+                                       const rdf::ReadTransaction& transaction, rules::LocalRun& run,
+                                       perception::TileSet& lacking);
 
 }  // namespace cluxel::mapping

@@ -87,7 +87,7 @@ class Competition {
 
   /// A candidate that loses is judged again in each round: noted is what is new.
   void noteJudged(const Rule& rule, const std::vector<FragmentIndex>& group, const Verdict& verdict) {
-    state_.trace.keep(state_.trace.spanOf(verdict.members));
+    state_.trace.keep(state_.trace.setOf(verdict.members));
     if (state_.trace.isNews(mixed(hashOf(rule.id), state_.fragments.hashOf(group)), verdict.trace))
       state_.trace.noteStep(verdict.members, verdict.trace);
   }
@@ -156,7 +156,7 @@ class Competition {
       of_group.members.insert(of_group.members.end(), members.begin(), members.end());
     }
     for (Settled& of_group : settled) {
-      state_.trace.keep(state_.trace.spanOf(of_group.members));
+      state_.trace.keep(state_.trace.setOf(of_group.members));
       const std::uint64_t trace = mixed(StepKind::Rivals, of_group.trace);
       if (of_group.members.empty() || !state_.trace.isNews(trace, trace)) continue;
       std::sort(of_group.members.begin(), of_group.members.end());

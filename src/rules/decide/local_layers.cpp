@@ -28,13 +28,12 @@ std::int32_t yOf(Cell cell) {
   return static_cast<std::int32_t>(static_cast<std::uint32_t>(cell));
 }
 
+}  // namespace
+
 class Layering {
  public:
   Layering(const perception::Scene& scene, const std::vector<char>& is_fixed, double reach_m)
-      : scene_(scene),
-        is_fixed_(is_fixed),
-        layers_(scene.primitives.size(), kNoLayer),
-        cells_of_(scene.primitives.size()) {
+      : scene_(scene), is_fixed_(is_fixed), cells_of_(scene.primitives.size()) {
     for (std::uint32_t cluxel = 0; cluxel < scene.cluxels.size(); ++cluxel) cover(cluxel);
     for (perception::PrimitiveIndex i = 0; i < cells_of_.size(); ++i) {
       std::vector<Cell>& cells = cells_of_[i];
@@ -52,6 +51,9 @@ class Layering {
   }
 
   std::vector<std::uint32_t> run(const std::vector<char>& is_dirty, std::span<const Eigen::AlignedBox2d> gone) {
+    layers_.assign(scene_.primitives.size(), kNoLayer);
+    reached_.clear();
+    looked_around_.clear();
     for (perception::PrimitiveIndex i = 0; i < is_dirty.size(); ++i)
       if (is_dirty[i] != 0) begin(i);
     for (const Eigen::AlignedBox2d& box : gone)
@@ -59,7 +61,7 @@ class Layering {
         for (std::int32_t y = cellOf(box.min().y()); y <= cellOf(box.max().y()); ++y) reachAround(keyOf(x, y), 0);
     // What a box of something gone reaches is not the same as what layer 0 reaches.
     looked_around_.clear();
-    for (std::uint32_t layer = 1; !reached_.empty(); ++layer)
+    for (std::uint32_t layer = 1; layer <= kLastLayer && !reached_.empty(); ++layer)
       for (const perception::PrimitiveIndex from : std::exchange(reached_, {})) reachFrom(from, layer);
     return std::move(layers_);
   }
@@ -110,12 +112,20 @@ class Layering {
   std::vector<perception::PrimitiveIndex> reached_;
 };
 
-}  // namespace
+LayerSearch::LayerSearch(const perception::Scene& scene, const std::vector<char>& is_fixed, double reach_m)
+    : layering_(std::make_unique<Layering>(scene, is_fixed, reach_m)) {}
+LayerSearch::~LayerSearch() = default;
+LayerSearch::LayerSearch(LayerSearch&&) noexcept = default;
+
+std::vector<std::uint32_t> LayerSearch::around(const std::vector<char>& is_dirty,
+                                               std::span<const Eigen::AlignedBox2d> gone) {
+  return layering_->run(is_dirty, gone);
+}
 
 std::vector<std::uint32_t> layersAround(const perception::Scene& scene, const std::vector<char>& is_dirty,
                                         const std::vector<char>& is_fixed, std::span<const Eigen::AlignedBox2d> gone,
                                         double reach_m) {
-  return Layering(scene, is_fixed, reach_m).run(is_dirty, gone);
+  return LayerSearch(scene, is_fixed, reach_m).around(is_dirty, gone);
 }
 
 }  // namespace cluxel::rules

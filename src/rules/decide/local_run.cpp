@@ -20,44 +20,49 @@ bool areLikely(const LocalInput& input, const std::vector<char>& is_fixed) {
   return true;
 }
 
-/// Decides the strata of lone seeds, and finds the layers of what they leave.
-std::vector<std::uint32_t> decideLoneSeeds(const LocalInput& input, double reach_m, ReasoningState& state) {
-  for (const std::vector<std::string>& stratum : dividedStrata(state.rules).lone) decideStratum(state, stratum);
-  const std::vector<char> is_fixed = fixedPrimitives(state);
-  if (areLikely(input, is_fixed)) return input.likely.layers;
-  return layersAround(input.window, input.is_dirty, is_fixed, input.gone, reach_m);
-}
-
 }  // namespace
 
 LocalRun::LocalRun(const LocalInput& input, const RuleSet& rules, const ReasoningContext& context, double reach_m)
-    : input_(input),
-      rules_(rules),
-      state_(std::make_unique<ReasoningState>(input.window, rules, context)),
-      layers_(decideLoneSeeds(input, reach_m, *state_)) {
+    : rules_(rules), state_(std::make_unique<ReasoningState>(input.window, rules, context)) {
   assert(!rules.asks_map);
+  for (const std::vector<std::string>& stratum : dividedStrata(rules).lone) decideStratum(*state_, stratum);
+  is_fixed_ = fixedPrimitives(*state_);
+  std::vector<std::uint32_t> layers = areLikely(input, is_fixed_)
+                                          ? input.likely.layers
+                                          : layersAround(input.window, input.is_dirty, is_fixed_, input.gone, reach_m);
+  seam_ = std::make_unique<SeamSearch>(input, is_fixed_, reach_m, std::move(layers));
 }
 
 LocalRun::~LocalRun() = default;
 
-std::optional<LocalOutcome> LocalRun::decide() {
-  LocalOutcome outcome;
-  outcome.layer = layers_;
-  if (std::all_of(layers_.begin(), layers_.end(), [](std::uint32_t layer) { return layer == kNoLayer; }))
-    return outcome;
-  const SeamSearch seams(input_, layers_);
-  if (!seams.mayFind()) return std::nullopt;
-  state_->trace.useLayers(layers_);
-  for (const std::vector<std::string>& stratum : dividedStrata(rules_).later) decideStratum(*state_, stratum);
-  outcome.result = finishedRun(*state_);
-  outcome.seams = seams.find(outcome.result, state_->trace.spans());
-  if (outcome.seams.empty()) return std::nullopt;
-  return outcome;
+const std::vector<std::uint32_t>& LocalRun::layers() const {
+  return seam_->layers();
+}
+
+bool LocalRun::decide() {
+  if (std::all_of(layers().begin(), layers().end(), [](std::uint32_t layer) { return layer == kNoLayer; })) return true;
+  return findSeam();
+}
+
+bool LocalRun::decideWith(std::span<const perception::PrimitiveIndex> changed) {
+  return seam_->addChanged(changed) && findSeam();
+}
+
+bool LocalRun::findSeam() {
+  if (!seam_->isInWindow()) return false;
+  if (!std::exchange(has_run_, true)) {
+    state_->trace.keepMembers();
+    for (const std::vector<std::string>& stratum : dividedStrata(rules_).later) decideStratum(*state_, stratum);
+    result_ = finishedRun(*state_);
+  }
+  return seam_->find(result_.traces, state_->trace.steps());
 }
 
 std::optional<LocalOutcome> decideLocally(const LocalInput& input, const RuleSet& rules,
                                           const ReasoningContext& context, double reach_m) {
-  return LocalRun(input, rules, context, reach_m).decide();
+  LocalRun run(input, rules, context, reach_m);
+  if (!run.decide()) return std::nullopt;
+  return LocalOutcome{run.takeResult(), run.layers()};
 }
 
 }  // namespace cluxel::rules

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "perception/segments/scene.hpp"
@@ -40,21 +42,20 @@ struct LocalInput {
   LikelyLayers likely{};
 };
 
-/// Layers that the run over the window and the run before decided alike, and that no step spans.
-struct Seam {
-  std::uint32_t first = 0, last = 0;
-};
+/// Layers up to this one are decided anew; those from the next on to kLastLayer are known to be as before.
+inline constexpr std::uint32_t kLastDecidedLayer = 1;
 
-/// What holds in the run over the whole new scene, for the nearest seam and each other one that begins at `j`:
-/// - of primitives in layers up to `j` the traces, the decisions that have one of them as a seed, and the objects that
-///   have one of them as a member are those of `result`;
+/// What holds in the run over the whole new scene:
+/// - of primitives in layers up to kLastDecidedLayer the traces, the decisions that have one of them as a seed, and the
+///   objects that have one of them as a member are those of `result`;
 /// - of all other primitives, and of objects without a member in these layers, they are those of the run before.
 /// An object of a whole class (`merge_into: class`) consists of the members that both runs gave it.
 struct LocalOutcome {
   ReasoningResult result;
-  std::vector<std::uint32_t> layer;  ///< by primitive; see layersAround()
-  std::vector<Seam> seams;           ///< the nearest first; none when nothing changed
+  std::vector<std::uint32_t> layer;  ///< by primitive; all kNoLayer when nothing changed
 };
+
+class SeamSearch;
 
 /// A run of the rules over a window, in two steps: the layers alone tell whether the window is large enough to try. The
 /// rules must not ask the map.
@@ -67,23 +68,33 @@ class LocalRun {
   LocalRun(const LocalRun&) = delete;
   LocalRun& operator=(const LocalRun&) = delete;
 
-  /// By primitive; see layersAround(). A window in which some of the first layers are open is too small.
-  const std::vector<std::uint32_t>& layers() const { return layers_; }
+  /// By primitive: the layers around what is dirty, and after decide() around all that came out otherwise than before.
+  /// A window in which some of them are open is too small.
+  const std::vector<std::uint32_t>& layers() const;
 
-  /// Runs the rules, and compares traces in some layers around the change with those stored. Absent when these layers
-  /// are not within the window, when no layers agree, or when a step reaches across them: then a larger window may do.
-  /// Several changes may be decided in windows of their own; each window marks all that is dirty in it. Without any
-  /// change the outcome is empty. To be called once.
-  std::optional<LocalOutcome> decide();
+  /// Runs the rules, and compares traces in the layers around the change with those stored. What has another trace
+  /// counts as changed, and so do the members of a step that reaches across these layers. False when a layer is not
+  /// within the window: a window that has all layers() may do. Several changes may be decided in windows of their own;
+  /// each window marks all that is dirty in it. To be called once.
+  bool decide();
+  /// After decide(): looks again, with these primitives counted as changed. False, too, when they all are already.
+  bool decideWith(std::span<const perception::PrimitiveIndex> changed);
+  /// After decide(); empty without any change.
+  const ReasoningResult& result() const { return result_; }
+  ReasoningResult takeResult() { return std::move(result_); }
 
  private:
-  const LocalInput& input_;
+  bool findSeam();
+
   const RuleSet& rules_;
   std::unique_ptr<ReasoningState> state_;
-  std::vector<std::uint32_t> layers_;
+  std::vector<char> is_fixed_;
+  std::unique_ptr<SeamSearch> seam_;
+  bool has_run_ = false;
+  ReasoningResult result_;
 };
 
-/// Both steps at once.
+/// Both steps at once. Absent when the window is too small.
 std::optional<LocalOutcome> decideLocally(const LocalInput& input, const RuleSet& rules,
                                           const ReasoningContext& context, double reach_m);
 

@@ -88,17 +88,17 @@ void ReasoningState::join(FragmentIndex fragment, const std::vector<FragmentInde
   trace.note(fragments[fragment].primitive, mixed(StepKind::Joined, mixed(before, fragments.hashOf(fragment))));
 }
 
-LayerSpan ReasoningState::layersOf(std::span<const FragmentIndex> some) const {
-  LayerSpan span;
-  if (trace.hasLayers())
-    for (const FragmentIndex fragment : some) span.add(trace.spanOf(fragments[fragment].primitive));
-  return span;
+MemberSet ReasoningState::membersOf(std::span<const FragmentIndex> some) {
+  if (!trace.keepsMembers()) return kNobody;
+  std::vector<MemberSet> members;
+  for (const FragmentIndex fragment : some) members.push_back(fragments[fragment].primitive);
+  return trace.unionOf(std::move(members));
 }
 
-void ReasoningState::noteGrowth(ObjectInMaking& object, std::uint64_t what, const LayerSpan& layers) const {
+void ReasoningState::noteGrowth(ObjectInMaking& object, std::uint64_t what, MemberSet added) {
   if (object.isOfWholeClass()) return;
   object.trace = mixed(object.trace, what);
-  object.layers.add(layers);
+  object.members = trace.unionOf(object.members, added);
 }
 
 std::vector<FragmentIndex> ReasoningState::fragmentsOf(const ObjectInMaking& object) const {

@@ -45,10 +45,10 @@ struct ObjectInMaking {
   std::vector<PartInMaking> parts;
   Bindings bindings;  ///< needed by absorbing, which measures candidates anew whose parts changed
   /// A hash of how it came about and grew. Of the one object of a class (`merge_into: class`) only the class's, and no
-  /// layers: it reaches through the whole map.
+  /// members: it reaches through the whole map.
   std::uint64_t trace = 0;
-  LayerSpan layers;         ///< of its primitives
-  bool may_gather = false;  ///< its share of a crown was split from that of others, and it gathered nothing since
+  MemberSet members = kNobody;  ///< its primitives, when members of steps are kept
+  bool may_gather = false;      ///< its share of a crown was split from that of others, and it gathered nothing since
 
   /// Whether it is the one object of its class.
   bool isOfWholeClass() const { return leaf->merge_into == MergeInto::Class; }
@@ -87,10 +87,10 @@ struct ReasoningState {
   void setOwner(FragmentIndex fragment, OwnerIndex owner);
   std::vector<FragmentIndex> cut(FragmentIndex fragment, std::vector<std::vector<std::uint32_t>> parts);
   void join(FragmentIndex fragment, const std::vector<FragmentIndex>& others);
-  /// The layers of the fragments' primitives.
-  LayerSpan layersOf(std::span<const FragmentIndex> some) const;
+  /// The primitives of the fragments; kNobody when members of steps are not kept.
+  MemberSet membersOf(std::span<const FragmentIndex> some);
   /// Notes that a thing becomes part of an object, or was considered for it.
-  void noteGrowth(ObjectInMaking& object, std::uint64_t what, const LayerSpan& layers) const;
+  void noteGrowth(ObjectInMaking& object, std::uint64_t what, MemberSet added);
 
   /// The fragments of an object, ascending.
   std::vector<FragmentIndex> fragmentsOf(const ObjectInMaking& object) const;

@@ -118,7 +118,7 @@ class RuleRun {
   }
 
   void noteJudged(const Open& seed, const Verdict& verdict) {
-    state_.trace.keep(state_.trace.spanOf(verdict.members));
+    state_.trace.keep(state_.trace.setOf(verdict.members));
     if (state_.trace.isNews(state_.fragments.hashOf(seed.group), verdict.trace))
       state_.trace.noteStep(verdict.members, verdict.trace);
   }

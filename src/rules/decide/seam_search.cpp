@@ -1,52 +1,47 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compares traces layer by layer.
+// Compares traces in the layers of the seam.
 #include "rules/decide/seam_search.hpp"
 
 #include <algorithm>
 
 namespace cluxel::rules {
 
-namespace {
+SeamSearch::SeamSearch(const LocalInput& input, const std::vector<char>& is_fixed, double reach_m,
+                       std::vector<std::uint32_t> layers)
+    : input_(input), is_fixed_(is_fixed), reach_m_(reach_m), is_changed_(input.is_dirty), layers_(std::move(layers)) {}
 
-constexpr std::uint32_t kFirstSeam = 1;  ///< layer 0 has no trace to compare with
-constexpr std::uint32_t kSeamWidth = 2;  ///< the last layer of the narrowest seam, counted from its first
+bool SeamSearch::isInWindow() const {
+  for (std::size_t i = 0; i < layers_.size(); ++i)
+    if (layers_[i] != kNoLayer && input_.is_open[i] != 0) return false;
+  return true;
+}
 
-}  // namespace
-
-SeamSearch::SeamSearch(const LocalInput& input, const std::vector<std::uint32_t>& layers)
-    : input_(input), layer_(layers) {
-  for (std::size_t i = 0; i < layers.size(); ++i) {
-    if (layers[i] == kNoLayer) continue;
-    last_ = std::max(last_, layers[i]);
-    if (input.is_open[i] != 0) first_open_ = std::min(first_open_, layers[i]);
+bool SeamSearch::find(std::span<const std::uint64_t> traces, const StepMembers& steps) {
+  while (isInWindow()) {
+    std::vector<perception::PrimitiveIndex> changed = differing(traces);
+    // A step across the seam ties both sides together.
+    const auto across = steps.ofStepsAcross(layers_, kLastDecidedLayer, kLastLayer);
+    changed.insert(changed.end(), across.begin(), across.end());
+    if (!addChanged(changed)) return true;
   }
+  return false;
 }
 
-bool SeamSearch::mayFind() const {
-  return first_open_ > kFirstSeam + kSeamWidth;
+std::vector<perception::PrimitiveIndex> SeamSearch::differing(std::span<const std::uint64_t> traces) const {
+  std::vector<perception::PrimitiveIndex> primitives;
+  for (perception::PrimitiveIndex i = 0; i < layers_.size(); ++i)
+    if (layers_[i] != kNoLayer && layers_[i] != 0 && input_.stored_trace[i] != traces[i]) primitives.push_back(i);
+  return primitives;
 }
 
-std::vector<Seam> SeamSearch::find(const ReasoningResult& result, const std::set<LayerSpan>& wide_steps) const {
-  const std::vector<char> agrees = agreeingLayers(result.traces);
-  std::vector<Seam> seams;
-  for (std::uint32_t j = kFirstSeam; j <= last_ + 1; ++j) {
-    std::uint32_t end = j + kSeamWidth;
-    for (const auto& [low, high] : wide_steps)
-      if (low <= j) end = std::max(end, high == kNoLayer ? high : high + 1);
-    if (end >= first_open_) break;
-    if (std::all_of(agrees.begin() + j, agrees.begin() + std::min(end, last_ + 1) + 1,
-                    [](char agreed) { return agreed != 0; }))
-      seams.push_back({j, end});
-  }
-  return seams;
-}
-
-/// By layer up to the first without a primitive.
-std::vector<char> SeamSearch::agreeingLayers(const std::vector<std::uint64_t>& traces) const {
-  std::vector<char> agrees(std::size_t{last_} + 2, 1);
-  for (std::size_t i = 0; i < layer_.size(); ++i)
-    if (layer_[i] != kNoLayer && input_.stored_trace[i] != traces[i]) agrees[layer_[i]] = 0;
-  return agrees;
+bool SeamSearch::addChanged(std::span<const perception::PrimitiveIndex> primitives) {
+  bool is_more = false;
+  for (const perception::PrimitiveIndex primitive : primitives)
+    is_more = std::exchange(is_changed_[primitive], 1) == 0 || is_more;
+  if (!is_more) return false;
+  if (!search_) search_.emplace(input_.window, is_fixed_, reach_m_);
+  layers_ = search_->around(is_changed_, input_.gone);
+  return true;
 }
 
 std::vector<char> fixedPrimitives(const ReasoningState& state) {

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Looks for layers of a window in which a run over it and the run before agree. Decision 0092 has the proof.
+// Looks for layers around a change in which a run over a window and the run before agree. Decision 0092 has the proof.
 #pragma once
 
 #include <cstdint>
-#include <set>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "rules/decide/local_run.hpp"
@@ -11,23 +12,32 @@
 
 namespace cluxel::rules {
 
-/// The layers of a window in which both runs agree, and those that are not all in the window.
+/// The seam are layers 1 to 3. Where the runs differ there, the change reaches farther: what differs counts as changed,
+/// too, and the layers are those around all of it.
 class SeamSearch {
  public:
-  /// `layers`: layersAround(). Both must outlive the search.
-  SeamSearch(const LocalInput& input, const std::vector<std::uint32_t>& layers);
+  /// `layers`: layersAround() what is dirty. All arguments but `layers` must outlive the search.
+  SeamSearch(const LocalInput& input, const std::vector<char>& is_fixed, double reach_m,
+             std::vector<std::uint32_t> layers);
 
-  /// Whether the narrowest seam next to the change is in the window.
-  bool mayFind() const;
-  /// All seams, the nearest first. `wide_steps`: TraceRecorder::spans() of the run.
-  std::vector<Seam> find(const ReasoningResult& result, const std::set<LayerSpan>& wide_steps) const;
+  /// By primitive: around all that counts as changed by now.
+  const std::vector<std::uint32_t>& layers() const { return layers_; }
+  /// Whether all layers are in the window as a whole: nothing of them is open.
+  bool isInWindow() const;
+  /// True when the seam lies in the window. `steps`: those of the run.
+  bool find(std::span<const std::uint64_t> traces, const StepMembers& steps);
+  /// These primitives count as changed from now on. False when all of them do already.
+  bool addChanged(std::span<const perception::PrimitiveIndex> primitives);
 
  private:
-  std::vector<char> agreeingLayers(const std::vector<std::uint64_t>& traces) const;
+  std::vector<perception::PrimitiveIndex> differing(std::span<const std::uint64_t> traces) const;
 
   const LocalInput& input_;
-  const std::vector<std::uint32_t>& layer_;
-  std::uint32_t last_ = 0, first_open_ = kNoLayer;
+  const std::vector<char>& is_fixed_;
+  double reach_m_;
+  std::vector<char> is_changed_;  ///< by primitive
+  std::vector<std::uint32_t> layers_;
+  std::optional<LayerSearch> search_;
 };
 
 /// What the first strata took, each primitive by itself, takes part in no later step: its trace is that of the run

@@ -23,11 +23,4 @@ bool TraceRecorder::isNews(std::uint64_t thing, std::uint64_t what) {
   return true;
 }
 
-LayerSpan TraceRecorder::spanOf(std::span<const perception::PrimitiveIndex> members) const {
-  LayerSpan span;
-  if (layers_ != nullptr)
-    for (const perception::PrimitiveIndex member : members) span.add((*layers_)[member]);
-  return span;
-}
-
 }  // namespace cluxel::rules

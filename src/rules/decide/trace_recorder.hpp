@@ -4,8 +4,7 @@
 
 #include <bit>
 #include <cstdint>
-#include <limits>
-#include <set>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <unordered_map>
@@ -13,6 +12,7 @@
 #include <vector>
 
 #include "perception/segments/scene.hpp"
+#include "rules/decide/step_members.hpp"
 
 namespace cluxel::rules {
 
@@ -47,18 +47,6 @@ constexpr std::uint64_t mixed(StepKind kind, std::uint64_t what) {
   return mixed(static_cast<std::uint64_t>(kind) + 1, what);
 }
 
-/// The smallest and the largest layer of some primitives; see layersAround().
-struct LayerSpan {
-  std::uint32_t low = std::numeric_limits<std::uint32_t>::max(), high = 0;
-
-  void add(std::uint32_t layer) { add(LayerSpan{layer, layer}); }
-  void add(const LayerSpan& other) { low = std::min(low, other.low), high = std::max(high, other.high); }
-  auto operator<=>(const LayerSpan&) const = default;
-};
-
-/// Steps with members fewer layers apart than this are not kept.
-inline constexpr std::uint32_t kFewestLayers = 2;
-
 /// Hashes are of content: no numbers of primitives, cluxels, fragments or objects enter, and nothing that depends on
 /// what happens far away. A step that is repeated without any change is noted once, because rounds that change nothing
 /// here may be due to a change elsewhere.
@@ -66,8 +54,8 @@ class TraceRecorder {
  public:
   explicit TraceRecorder(std::size_t primitives) : traces_(primitives, 0) {}
 
-  /// From now on the spans of steps are kept. `layers` by primitive, valid as long as the recorder.
-  void useLayers(const std::vector<std::uint32_t>& layers) { layers_ = &layers; }
+  /// From now on the members of steps are kept, too.
+  void keepMembers() { steps_.emplace(traces_.size()); }
 
   /// Begins a part of the run. What was noted in earlier parts may be noted again.
   void enter(std::uint64_t part);
@@ -83,31 +71,33 @@ class TraceRecorder {
   /// Whether `what` is not what was last known about `thing` in this part of the run; it is known from now on.
   bool isNews(std::uint64_t thing, std::uint64_t what);
 
-  bool hasLayers() const { return layers_ != nullptr; }
-  LayerSpan spanOf(perception::PrimitiveIndex primitive) const {
-    return layers_ == nullptr ? LayerSpan{} : LayerSpan{(*layers_)[primitive], (*layers_)[primitive]};
+  bool keepsMembers() const { return steps_.has_value(); }
+  /// kNobody when no members are kept, as in the next two.
+  MemberSet setOf(std::span<const perception::PrimitiveIndex> members) {
+    return steps_ ? steps_->unionOf({members.begin(), members.end()}) : kNobody;
   }
-  LayerSpan spanOf(std::span<const perception::PrimitiveIndex> members) const;
-  /// Keeps the span of a step's members when it is wide.
-  void keep(const LayerSpan& span) {
-    if (layers_ != nullptr && span.low <= span.high && span.high - span.low >= kFewestLayers) spans_.insert(span);
+  MemberSet unionOf(MemberSet a, MemberSet b) { return steps_ ? steps_->unionOf({a, b}) : kNobody; }
+  MemberSet unionOf(std::vector<MemberSet> sets) { return steps_ ? steps_->unionOf(std::move(sets)) : kNobody; }
+  /// Keeps the members of a step. Of each step, also of one that changes nothing.
+  void keep(MemberSet members) {
+    if (steps_) steps_->addStep(members);
   }
 
-  /// Back to an earlier state. Spans of steps stay: a seam must enclose the groups that were looked at.
+  /// Back to an earlier state. Members of steps stay: a seam must enclose the groups that were looked at.
   void takeBack(const TraceRecorder& earlier) {
     traces_ = earlier.traces_, known_ = earlier.known_;
     part_ = earlier.part_, round_ = earlier.round_;
   }
 
   std::vector<std::uint64_t> takeTraces() { return std::move(traces_); }
-  const std::set<LayerSpan>& spans() const { return spans_; }
+  /// After keepMembers().
+  const StepMembers& steps() const { return *steps_; }
 
  private:
   std::vector<std::uint64_t> traces_;
-  const std::vector<std::uint32_t>* layers_ = nullptr;
   std::uint64_t part_ = 0, round_ = 0;
   std::unordered_map<std::uint64_t, std::uint64_t> known_;
-  std::set<LayerSpan> spans_;
+  std::optional<StepMembers> steps_;
 };
 
 }  // namespace cluxel::rules

@@ -62,7 +62,7 @@ class Absorbing {
     for (int round = 0; round < kRounds; ++round) {
       state_.trace.enterRound(static_cast<std::uint64_t>(round));
       const std::vector<Claim> claims = weigh();
-      keepSpans(claims);
+      keepMembers(claims);
       if (!grant(claims)) break;
     }
   }
@@ -95,7 +95,7 @@ class Absorbing {
       for (const Claim& claim : of_object) {
         Contest& contest = contests_[claim.fragment];
         contest.trace += traceOf(claim);
-        contest.layers.add(state_.objects[claim.object].layers);
+        if (state_.trace.keepsMembers()) contest.members.push_back(state_.objects[claim.object].members);
         const auto [entry, fresh] = best.try_emplace(claim.fragment, claim);
         if (!fresh && isBetter(claim, entry->second)) entry->second = claim;
       }
@@ -118,17 +118,20 @@ class Absorbing {
 
   /// All objects that claim a fragment decide about it; and about what an object gets, all that it may get decides,
   /// because its budget is used up by it.
-  void keepSpans(const std::vector<Claim>& claims) {
-    if (!state_.trace.hasLayers()) return;
-    std::map<std::size_t, LayerSpan> of_object;
+  void keepMembers(const std::vector<Claim>& claims) {
+    if (!state_.trace.keepsMembers()) return;
+    std::map<std::size_t, std::vector<MemberSet>> of_object;
     for (const Claim& claim : claims) {
-      LayerSpan span = state_.layersOf(std::span(&claim.fragment, 1));
-      LayerSpan& wanted = of_object.try_emplace(claim.object, state_.objects[claim.object].layers).first->second;
-      wanted.add(span);
-      span.add(contests_[claim.fragment].layers);
-      state_.trace.keep(span);
+      const MemberSet wanted = state_.fragments[claim.fragment].primitive;
+      of_object[claim.object].push_back(wanted);
+      std::vector<MemberSet> of_claim = contests_[claim.fragment].members;
+      of_claim.push_back(wanted);
+      state_.trace.keep(state_.trace.unionOf(std::move(of_claim)));
     }
-    for (const auto& [object, span] : of_object) state_.trace.keep(span);
+    for (auto& [object, members] : of_object) {
+      members.push_back(state_.objects[object].members);
+      state_.trace.keep(state_.trace.unionOf(std::move(members)));
+    }
   }
 
   /// A claim that was refused for the same reasons before is not noted again.
@@ -139,7 +142,7 @@ class Absorbing {
     if (!state_.trace.isNews(fragment, trace)) return;
     state_.trace.note(state_.fragments[claim.fragment].primitive, trace);
     state_.noteGrowth(state_.objects[claim.object], mixed(fragment, trace),
-                      is_granted ? state_.layersOf(std::span(&claim.fragment, 1)) : LayerSpan{});
+                      is_granted ? state_.fragments[claim.fragment].primitive : kNobody);
     if (is_granted) granted_.push_back(claim.object);
   }
 
@@ -261,8 +264,8 @@ class Absorbing {
   std::size_t first_;
   bool late_;
   struct Contest {
-    std::uint64_t trace = 0;  ///< of all claims to the fragment
-    LayerSpan layers;         ///< of the objects that claim it
+    std::uint64_t trace = 0;         ///< of all claims to the fragment
+    std::vector<MemberSet> members;  ///< of the objects that claim it, when they are kept
   };
 
   std::vector<double> budget_, absorbed_;

@@ -272,12 +272,12 @@ class Gathering {
   /// The gatherers that are near decide about the fragment, also when none reaches it.
   void noteNear(const ReachedFragment& found) {
     std::uint64_t trace = 0;
-    LayerSpan layers = state_.layersOf(std::span(&found.fragment, 1));
+    std::vector<MemberSet> members{state_.fragments[found.fragment].primitive};
     for (const auto& [number, gap] : found.near) {
       trace += mixed(gatherers_[number].trace, gap);
-      layers.add(state_.objects[gatherers_[number].owner].layers);
+      members.push_back(state_.objects[gatherers_[number].owner].members);
     }
-    state_.trace.keep(layers);
+    state_.trace.keep(state_.trace.unionOf(std::move(members)));
     if (state_.trace.isNews(state_.fragments.hashOf(found.fragment), trace))
       state_.trace.note(state_.fragments[found.fragment].primitive, mixed(StepKind::Gathered, trace));
   }
@@ -296,7 +296,7 @@ class Gathering {
   void give(FragmentIndex fragment, const Gatherer& gatherer, double gap_m) {
     state_.setOwner(fragment, gatherer.owner);
     state_.noteGrowth(state_.objects[gatherer.owner], mixed(state_.fragments.hashOf(fragment), gap_m),
-                      state_.layersOf(std::span(&fragment, 1)));
+                      state_.fragments[fragment].primitive);
     for (const std::size_t g : of_owner_[gatherer.owner]) gatherers_[g].bounds.extend(boundsOf(fragment));
     ObjectInMaking& object = state_.objects[gatherer.owner];
     for (PartInMaking& part : object.parts)

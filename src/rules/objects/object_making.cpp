@@ -8,11 +8,9 @@ namespace cluxel::rules {
 
 namespace {
 
-/// Notes that the members of the verdict are now part of the object, and keeps the span of all of them.
-void noteMembers(ReasoningState& state, ObjectInMaking& object, const Verdict& verdict, const LayerSpan& added) {
-  LayerSpan span = object.layers;
-  span.add(state.trace.spanOf(verdict.members));
-  state.trace.keep(span);
+/// Notes that `added` are now part of the object. All of it and the members of the verdict are members of this step.
+void noteMembers(ReasoningState& state, ObjectInMaking& object, const Verdict& verdict, MemberSet added) {
+  state.trace.keep(state.trace.unionOf(object.members, state.trace.setOf(verdict.members)));
   state.noteGrowth(object, verdict.trace, added);
   state.trace.noteStep(verdict.members, mixed(StepKind::Merged, mixed(object.trace, verdict.trace)));
 }
@@ -31,7 +29,7 @@ void joinRelated(ReasoningState& state, const Rule& rule, OwnerIndex related, co
     state.setOwner(fragment, related);
     part->fragments.push_back(fragment);
   }
-  noteMembers(state, object, verdict, state.layersOf(group));
+  noteMembers(state, object, verdict, state.membersOf(group));
   part->is_outdated = true;
 }
 
@@ -47,7 +45,7 @@ void makeObject(ReasoningState& state, const Rule& rule, Verdict verdict) {
   object.confidence = state.decisions.back().probability;
   object.decision = state.decisions.size() - 1;
   object.trace = hashOf(rule.class_iri);
-  LayerSpan layers;
+  std::vector<FragmentIndex> taken;
   for (const auto& [name, part_class] : accept.parts) {
     PartInMaking part{name, part_class, {}, false};
     const bool shared = accept.splitting && accept.splitting->part == name;
@@ -61,10 +59,10 @@ void makeObject(ReasoningState& state, const Rule& rule, Verdict verdict) {
         part.fragments.push_back(fragment);
       }
     }
-    layers.add(state.layersOf(part.fragments));
+    taken.insert(taken.end(), part.fragments.begin(), part.fragments.end());
     object.parts.push_back(std::move(part));
   }
-  noteMembers(state, object, verdict, layers);
+  noteMembers(state, object, verdict, state.membersOf(taken));
   object.bindings = std::move(bindings);
   state.objects.push_back(std::move(object));
 }

@@ -43,7 +43,7 @@ class Joining {
     for (std::size_t i = 0; i < members.size(); ++i) {
       held_[i].fragments = {members[i]};
       held_[i].trace = state.fragments.hashOf(members[i]);
-      held_[i].layers = state.layersOf(held_[i].fragments);
+      held_[i].members = state.membersOf(held_[i].fragments);
     }
     if (limits().empty() || !by_outline_) return;
     for (std::size_t i = 0; i < members.size(); ++i) held_[i].outline = state.fragments.outlineOf(members[i]);
@@ -69,7 +69,7 @@ class Joining {
     std::vector<FragmentIndex> fragments;
     Outline outline;          ///< maintained only when all limits can be tested on it
     std::uint64_t trace = 0;  ///< a hash of all joins and refusals that led to it
-    LayerSpan layers;
+    MemberSet members = kNobody;
     bool is_linked = false;
   };
 
@@ -104,9 +104,8 @@ class Joining {
   bool join(std::uint32_t a, std::uint32_t b) {
     if (a == b) return false;
     Group both;
-    both.layers = held_[a].layers;
-    both.layers.add(held_[b].layers);
-    state_.trace.keep(both.layers);
+    both.members = state_.trace.unionOf(held_[a].members, held_[b].members);
+    state_.trace.keep(both.members);
     both.trace = mixed(StepKind::Joined, held_[a].trace + held_[b].trace);
     held_[a].is_linked = held_[b].is_linked = both.is_linked = true;
     both.fragments = held_[a].fragments;

@@ -50,7 +50,7 @@ class SharedSplitting {
       for (const OwnerIndex owner : owners) sets.join(owners.front(), owner);
     struct Connected {
       std::uint64_t trace = 0;
-      LayerSpan layers;
+      std::vector<MemberSet> members;
     };
     std::map<std::uint32_t, Connected> connected;
     std::set<OwnerIndex> claimants;
@@ -59,16 +59,16 @@ class SharedSplitting {
       for (const OwnerIndex owner : owners) {
         if (claimants.insert(owner).second) with.trace += mixed(StepKind::Split, state_.objects[owner].trace);
         with.trace += mixed(state_.fragments.hashOf(fragment), state_.objects[owner].trace);
-        with.layers.add(state_.objects[owner].layers);
+        with.members.push_back(state_.objects[owner].members);
       }
-      with.layers.add(state_.layersOf(std::span(&fragment, 1)));
+      with.members.push_back(state_.fragments[fragment].primitive);
     }
     for (const auto& [fragment, owners] : state_.claims)
       state_.trace.note(state_.fragments[fragment].primitive,
                         mixed(StepKind::Split, connected[sets.find(owners.front())].trace));
     for (const OwnerIndex owner : claimants)
-      state_.noteGrowth(state_.objects[owner], connected[sets.find(owner)].trace, {});
-    for (const auto& [root, with] : connected) state_.trace.keep(with.layers);
+      state_.noteGrowth(state_.objects[owner], connected[sets.find(owner)].trace, kNobody);
+    for (auto& [root, with] : connected) state_.trace.keep(state_.trace.unionOf(std::move(with.members)));
   }
 
   /// Sorts claimants by their trunks in canonical order, so that ties do not depend on the order of acceptance.
@@ -129,7 +129,7 @@ class SharedSplitting {
     for (std::size_t i = 0; i < owners.size(); ++i) {
       state_.setOwner(made[i], owners[i]);
       state_.noteGrowth(state_.objects[owners[i]], state_.fragments.hashOf(made[i]),
-                        state_.layersOf(std::span(&made[i], 1)));
+                        state_.fragments[made[i]].primitive);
       auto& parts_of_owner = state_.objects[owners[i]].parts;
       for (PartInMaking& part : parts_of_owner)
         if (part.name == specOf(owners[i]).part) part.fragments.push_back(made[i]);

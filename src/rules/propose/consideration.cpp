@@ -114,6 +114,13 @@ class Considering {
   std::vector<std::pair<perception::PrimitiveIndex, std::uint32_t>> seen_from_;  ///< and how many layers farther
 };
 
+std::vector<perception::PrimitiveIndex> primitivesUpTo(std::uint32_t layer, const std::vector<std::uint32_t>& layers) {
+  std::vector<perception::PrimitiveIndex> primitives;
+  for (perception::PrimitiveIndex i = 0; i < layers.size(); ++i)
+    if (layers[i] <= layer) primitives.push_back(i);
+  return primitives;
+}
+
 }  // namespace
 
 std::vector<Consideration> considerFor(const perception::Scene& scene, const RuleSet& rules,
@@ -139,18 +146,22 @@ std::optional<std::vector<Consideration>> considerIn(const LocalInput& window, c
   Considering considering(state, class_iri, primitives);
   const DividedStrata strata = dividedStrata(rules);
   for (const std::vector<std::string>& stratum : strata.lone) considering.decide(stratum);
-  const std::vector<std::uint32_t> layers =
-      layersAround(window.window, window.is_dirty, fixedPrimitives(state), window.gone, reach_m);
-  const SeamSearch search(window, layers);
-  if (!search.mayFind()) return std::nullopt;
-  state.trace.useLayers(layers);
+  const std::vector<char> is_fixed = fixedPrimitives(state);
+  SeamSearch seam(window, is_fixed, reach_m,
+                  layersAround(window.window, window.is_dirty, is_fixed, window.gone, reach_m));
+  if (!seam.isInWindow()) return std::nullopt;
+  state.trace.keepMembers();
   for (const std::vector<std::string>& stratum : strata.later) considering.decide(stratum);
   const ReasoningResult result = finishedRun(state);
-  const std::vector<Seam> seams = search.find(result, state.trace.spans());
-  const std::uint32_t seen = considering.lastSeen(layers);
-  // Within a seam, too, all is in the state in which it would be in the run over the whole.
-  if (std::none_of(seams.begin(), seams.end(), [seen](const Seam& seam) { return seen <= seam.last; }))
-    return std::nullopt;
+  if (!seam.find(result.traces, state.trace.steps())) return std::nullopt;
+  // Within a seam, too, all is in the state in which it would be in the run over the whole. A layer more that counts as
+  // changed moves the seam by a layer.
+  const std::uint32_t seen = considering.lastSeen(seam.layers());
+  if (seen == kNoLayer) return std::nullopt;
+  for (std::uint32_t last = kLastLayer; last < seen; ++last) {
+    seam.addChanged(primitivesUpTo(1, seam.layers()));
+    if (!seam.find(result.traces, state.trace.steps())) return std::nullopt;
+  }
   return considering.take();
 }
 
