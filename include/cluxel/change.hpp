@@ -34,8 +34,8 @@ struct ObjectChange {
   std::vector<std::string> derived_from;  ///< IRIs of Changed, Split and Joined before the change
 };
 
-/// What a change did. An object goes on in another one that holds at least half of its measured points, or the other
-/// way round.
+/// What a change did. An object goes on in another one with which it shares at least half of the cluxels of the smaller
+/// of the two, by their seed points or by where they are.
 struct MapChanges {
   std::size_t scans_added = 0, scans_already_there = 0, scans_removed = 0, scans_moved = 0;
   std::size_t tiles_changed = 0;  ///< tiles of 16 m of which something was computed anew and differs

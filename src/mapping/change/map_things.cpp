@@ -6,7 +6,7 @@
 #include <functional>
 #include <set>
 
-#include "mapping/change/common_members.hpp"
+#include "mapping/change/object_successors.hpp"
 #include "rdf/map_iris.hpp"
 
 namespace cluxel::mapping {
@@ -15,7 +15,7 @@ namespace {
 
 using rdf::vocabulary::kGraphHistory;
 
-/// Objects before and after a change, matched by the seed points they share.
+/// Objects before and after a change, matched by successorsOf().
 struct Heirs {
   std::vector<std::vector<std::size_t>> before_of;     ///< by object after: those whose name it inherits
   std::vector<std::vector<std::size_t>> ancestors_of;  ///< by object after: all that went on in it
@@ -47,14 +47,13 @@ Heirs heirsOf(const std::vector<ObjectMembers>& before, const std::vector<Object
       others_after.push_back(&after[a]), number_after.push_back(a);
   for (std::size_t b = 0; b < before.size(); ++b)
     if (!same.contains(before[b].id)) others_before.push_back(&before[b]), number_before.push_back(b);
-  const auto common = commonMembers(others_before, others_after);
-  for (std::size_t i = 0; i < common.size(); ++i) {
+  const auto successors = successorsOf(others_before, others_after);
+  for (std::size_t i = 0; i < successors.size(); ++i) {
     const std::size_t b = number_before[i];
     std::optional<std::size_t> heir;
     std::size_t most = 0;
-    for (const auto& [other, count] : common[i]) {
+    for (const auto& [other, count] : successors[i]) {
       const std::size_t a = number_after[other];
-      if (2 * count < std::min(before[b].seeds.size(), after[a].seeds.size())) continue;
       heirs.ancestors_of[a].push_back(b);
       if (heir && (count < most || (count == most && after[*heir].id < after[a].id))) continue;
       heir = a, most = count;
@@ -191,10 +190,23 @@ void writeThings(rdf::WriteTransaction& transaction, const std::string& time, co
 void copyHistory(const rdf::QuadReader& from, rdf::WriteTransaction& into) {
   const auto graph = from.idOf(Term::iri(kGraphHistory));
   if (!graph) return;
+  const auto begins = from.idOf(Term::iri(provenance("generatedAtTime")));
+  const rdf::QuadReader there(static_cast<const rdf::ReadTransaction&>(into));
+  const ThingLookup things(there);
   rdf::QuadWriter writer(into);
   rdf::QuadCursor cursor = from.scan({.s = {}, .p = {}, .o = {}, .g = *graph});
-  for (rdf::QuadIds quad; cursor.next(quad);)
-    writer.add(Quad{from.termOf(quad.s), from.termOf(quad.p), from.termOf(quad.o), Term::iri(kGraphHistory)});
+  for (rdf::QuadIds quad; cursor.next(quad);) {
+    const Quad copied{from.termOf(quad.s), from.termOf(quad.p), from.termOf(quad.o), Term::iri(kGraphHistory)};
+    if (quad.p == begins && hashIn(copied.subject.text, "thing")) {  // of both maps it begins with the earlier one
+      const auto known = things.since(copied.subject.text);
+      if (known && *known <= copied.object.text) continue;
+      if (known)
+        writer.remove(rdf::QuadIds{writer.intern(copied.subject), writer.intern(copied.predicate),
+                                   writer.intern(Term::literal(*known, rdf::vocabulary::xsd("dateTime"))),
+                                   writer.intern(copied.graph)});
+    }
+    writer.add(copied);
+  }
   writer.flush();
 }
 

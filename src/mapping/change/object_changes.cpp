@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Overlaps are counted by seed point; an object has successors and predecessors by half of the smaller one's points.
+// Sorts successions into what was added, changed, split and joined.
 #include "mapping/change/object_changes.hpp"
 
 #include <algorithm>
@@ -7,28 +7,25 @@
 #include <iterator>
 #include <set>
 
-#include "mapping/change/common_members.hpp"
+#include "mapping/change/object_successors.hpp"
 
 namespace cluxel::mapping {
 
 namespace {
 
-using Number = std::uint32_t;
-
 /// For each object, the numbers of its successors (or predecessors) on the other side.
 struct Succession {
-  std::vector<std::vector<Number>> after_of, before_of;
+  std::vector<std::vector<std::uint32_t>> after_of, before_of;
 };
 
 Succession successionOf(const ObjectList& before, const ObjectList& after) {
-  Succession succession{std::vector<std::vector<Number>>(before.size()),
-                        std::vector<std::vector<Number>>(after.size())};
-  const auto common = commonMembers(before, after);
-  for (Number b = 0; b < before.size(); ++b)
-    for (const auto& [a, count] : common[b]) {
-      if (2 * count < std::min(before[b]->seeds.size(), after[a]->seeds.size())) continue;
-      succession.after_of[b].push_back(a);
-      succession.before_of[a].push_back(b);
+  Succession succession{std::vector<std::vector<std::uint32_t>>(before.size()),
+                        std::vector<std::vector<std::uint32_t>>(after.size())};
+  const auto successors = successorsOf(before, after);
+  for (std::uint32_t b = 0; b < before.size(); ++b)
+    for (const SharedMembers& successor : successors[b]) {
+      succession.after_of[b].push_back(successor.other);
+      succession.before_of[successor.other].push_back(b);
     }
   return succession;
 }
@@ -48,18 +45,20 @@ std::uint64_t memberKey(const ContentHash& scan, std::uint32_t point) {
 }
 
 std::vector<ObjectMembers> membersOf(const std::vector<rules::SemanticObject>& objects,
-                                     const perception::SceneSeeds& seeds) {
+                                     const perception::SceneCluxels& cluxels) {
   std::vector<ObjectMembers> all;
   all.reserve(objects.size());
   for (const rules::SemanticObject& object : objects) {
-    ObjectMembers members{object.id, object.class_iri, {}};
+    ObjectMembers members{object.id, object.class_iri, {}, {}};
     std::size_t count = 0;
     for (const rules::ObjectPart& part : object.parts) count += part.cluxels.size();
     members.seeds.reserve(count);
+    if (!object.is_class_wide) members.places.reserve(count);
     for (const rules::ObjectPart& part : object.parts)
       for (const std::uint32_t cluxel : part.cluxels) {
-        const perception::SeedName& seed = seeds.seed[cluxel];
-        members.seeds.push_back(memberKey(seeds.scans[seed.scan], seed.point));
+        const perception::SeedName& seed = cluxels.seed[cluxel];
+        members.seeds.push_back(memberKey(cluxels.scans[seed.scan], seed.point));
+        if (!object.is_class_wide) members.places.push_back(placeOf(cluxels.center[cluxel]));
       }
     all.push_back(std::move(members));
   }
@@ -80,7 +79,7 @@ ObjectChanges changesBetween(const ObjectList& before, const ObjectList& after) 
       continue;
     }
     DerivedObject derived{after[a]->id, {}};
-    for (const Number b : predecessors) derived.from.push_back(before[b]->id);
+    for (const std::uint32_t b : predecessors) derived.from.push_back(before[b]->id);
     if (std::find(derived.from.begin(), derived.from.end(), derived.id) != derived.from.end())
       ++changes.unchanged;
     else if (predecessors.size() > 1)

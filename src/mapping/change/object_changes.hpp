@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a change did to the objects of a map: they are compared by the measured points that they hold.
+// What a change did to the objects of a map: they are compared by the measured points that they hold, and by where
+// these are.
 #pragma once
 
 #include <cstdint>
@@ -14,18 +15,28 @@
 
 namespace cluxel::mapping {
 
+/// Where a cluxel is, packed: placeOf() in mapping/change/member_places.hpp.
+using MemberPlace = std::uint64_t;
+inline constexpr MemberPlace kNoMemberPlace = 0;
+
 /// An object with the seed points of its cluxels. Seed points keep their name (scan, point number) when a scan moves.
+/// Other points become seeds when scans of the same place come or go: then it matters where a cluxel is.
 struct ObjectMembers {
   ContentHash id;
   std::string class_iri;
   std::vector<std::uint64_t> seeds;  ///< hashes of (scan, point), in no order
+  /// Of the cluxels, in the order of the seeds. kNoMemberPlace where the seeds of a tile stay, and empty where they all
+  /// do; of objects of a whole class, which go on by their name.
+  std::vector<MemberPlace> places = {};
+
+  MemberPlace placeOf(std::size_t member) const { return places.empty() ? kNoMemberPlace : places[member]; }
 };
 
 /// The hash of a seed point.
 std::uint64_t memberKey(const ContentHash& scan, std::uint32_t point);
 
 std::vector<ObjectMembers> membersOf(const std::vector<rules::SemanticObject>& objects,
-                                     const perception::SceneSeeds& seeds);
+                                     const perception::SceneCluxels& cluxels);
 
 /// The objects that an object was derived from.
 struct DerivedObject {
@@ -35,7 +46,7 @@ struct DerivedObject {
 
 struct ObjectChanges {
   std::size_t unchanged = 0;
-  std::vector<ContentHash> added, gone;  ///< share no seed point with an object before, or after
+  std::vector<ContentHash> added, gone;  ///< no object before goes on in it; it goes on in none after
   std::vector<DerivedObject> changed;    ///< other members or another class, and one predecessor
   std::vector<DerivedObject> split;      ///< the parts of an object that has become several
   std::vector<DerivedObject> joined;     ///< made of several objects
@@ -43,9 +54,8 @@ struct ObjectChanges {
   bool isEmpty() const { return added.empty() && gone.empty() && changed.empty() && split.empty() && joined.empty(); }
 };
 
-/// Compares the objects before and after a change. An object goes on in another when that holds at least half of its
-/// seed points, or the other way round. Lists are sorted by id. `before` may hold the objects of several maps, in which
-/// members occur twice. Cost: linear in the members.
+/// Compares the objects before and after a change, by successorsOf(). Lists are sorted by id. `before` may hold the
+/// objects of several maps, in which members occur twice. Cost: linear in the members.
 ObjectChanges compareObjects(const std::vector<ObjectMembers>& before, const std::vector<ObjectMembers>& after);
 /// The same for the objects of one map before and after, which have no common members. Both sorted by id. An object
 /// with the same name before and after is unchanged; such objects need not be given, and `others` is the number of

@@ -3,6 +3,7 @@
 #include "mapping/window/former_objects.hpp"
 
 #include "cluxel/error.hpp"
+#include "mapping/change/member_places.hpp"
 #include "mapping/layers/stored_layers.hpp"
 #include "mapping/map_tables.hpp"
 
@@ -16,29 +17,38 @@ namespace {
 
 }  // namespace
 
-void MemberLists::add(const TileLayer& layer, const perception::SummaryTile& summary,
+void MemberLists::add(const TileLayer& layer, const perception::SummaryTile& summary, bool has_places,
                       const std::function<bool(const ContentHash&)>& is_wanted) {
   if (layer.size() != summary.size())
     throw Error(ErrorKind::StoreUnavailable, "stored objects are of other cluxels; the map is damaged, build it anew");
-  std::vector<ObjectMembers*> of_share;
+  std::vector<Collected*> of_share;
   for (const TileLayer::Share& share : layer.shares) {
     of_share.push_back(nullptr);
     if (!is_wanted(share.object)) continue;
     const auto [place, is_new] = objects_.try_emplace(share.object);
-    if (is_new) {
-      place->second.id = share.object;
-      if (const auto record = storedRecord(transaction_, share.object)) place->second.class_iri = record->class_iri;
-    }
     of_share.back() = &place->second;
+    if (!is_new) continue;
+    place->second.members.id = share.object;
+    if (const auto record = storedRecord(transaction_, share.object)) {
+      place->second.members.class_iri = record->class_iri;
+      place->second.is_class_wide = record->is_class_wide;
+    }
   }
-  for (std::size_t c = 0; c < layer.size(); ++c)
-    if (const std::uint32_t share = layer.share_of_cluxel[c]; share != kNoShare && of_share[share] != nullptr)
-      of_share[share]->seeds.push_back(memberKey(summary.scans[summary.seed_scan[c]], summary.seed_point[c]));
+  const Eigen::Vector3d corner = perception::cornerOf(layer.key);
+  for (std::size_t c = 0; c < layer.size(); ++c) {
+    const std::uint32_t share = layer.share_of_cluxel[c];
+    if (share == kNoShare || of_share[share] == nullptr) continue;
+    ObjectMembers& members = of_share[share]->members;
+    members.seeds.push_back(memberKey(summary.scans[summary.seed_scan[c]], summary.seed_point[c]));
+    if (of_share[share]->is_class_wide || (!has_places && members.places.empty())) continue;
+    members.places.resize(members.seeds.size(), kNoMemberPlace);
+    if (has_places) members.places.back() = placeOf(corner + summary.mean[c].cast<double>());
+  }
 }
 
 std::vector<ObjectMembers> MemberLists::take() {
   std::vector<ObjectMembers> all;
-  for (auto& [id, members] : objects_) all.push_back(std::move(members));
+  for (auto& [id, collected] : objects_) all.push_back(std::move(collected.members));
   objects_.clear();
   return all;
 }
@@ -48,7 +58,7 @@ std::vector<ObjectMembers> storedMembers(const rdf::ReadTransaction& transaction
   forEachStoredLayer(transaction, [&](const TileLayer& layer) {
     const auto summary = transaction.block(tables::kSummaries, tables::keyOf(layer.key));
     if (!summary) refuseMissingBlock();
-    members.add(layer, perception::seedsFromBytes(*summary), [](const ContentHash&) { return true; });
+    members.add(layer, perception::seedsFromBytes(*summary), true, [](const ContentHash&) { return true; });
   });
   return members.take();
 }
@@ -61,19 +71,20 @@ const perception::SummaryTile* FormerObjects::summaryOf(const perception::TileKe
 }
 
 void FormerObjects::add(const TileLayer& layer, const std::function<bool(const ContentHash&)>& is_wanted) {
-  if (const perception::SummaryTile* summary = summaryOf(layer.key)) members_.add(layer, *summary, is_wanted);
+  if (const perception::SummaryTile* summary = summaryOf(layer.key))
+    members_.add(layer, *summary, former_.isOther(layer.key), is_wanted);
 }
 
 std::vector<ObjectMembers> formerObjects(const rdf::ReadTransaction& transaction, const OutputChanges& changes) {
   MemberLists members(transaction);
   forEachStoredLayer(transaction, [&](const TileLayer& layer) {
     const auto changed = changes.former_summaries.find(layer.key);
-    if (changed != changes.former_summaries.end() && !changed->second) return;
-    const auto summary = changed != changes.former_summaries.end()
-                             ? std::optional<std::string_view>(*changed->second)
-                             : transaction.block(tables::kSummaries, tables::keyOf(layer.key));
+    const bool is_other = changed != changes.former_summaries.end();
+    if (is_other && !changed->second) return;
+    const auto summary = is_other ? std::optional<std::string_view>(*changed->second)
+                                  : transaction.block(tables::kSummaries, tables::keyOf(layer.key));
     if (!summary) refuseMissingBlock();
-    members.add(layer, perception::seedsFromBytes(*summary), [](const ContentHash&) { return true; });
+    members.add(layer, perception::seedsFromBytes(*summary), is_other, [](const ContentHash&) { return true; });
   });
   return members.take();
 }

@@ -16,18 +16,24 @@ namespace cluxel::mapping {
 class MemberLists {
  public:
   explicit MemberLists(const rdf::ReadTransaction& transaction) : transaction_(transaction) {}
-  /// Adds the members that `layer` holds of the objects for which `is_wanted`. `summary`: of the same tile.
-  void add(const TileLayer& layer, const perception::SummaryTile& summary,
+  /// Adds the members that `layer` holds of the objects for which `is_wanted`. `summary`: of the same tile, of which
+  /// places matter when its seeds may be others afterwards.
+  void add(const TileLayer& layer, const perception::SummaryTile& summary, bool has_places,
            const std::function<bool(const ContentHash&)>& is_wanted);
   /// Sorted by id.
   std::vector<ObjectMembers> take();
 
  private:
+  struct Collected {
+    ObjectMembers members;
+    bool is_class_wide = false;
+  };
+
   const rdf::ReadTransaction& transaction_;
-  std::map<ContentHash, ObjectMembers> objects_;
+  std::map<ContentHash, Collected> objects_;
 };
 
-/// All objects of a map as it is stored, read tile by tile. Memory: 8 bytes a cluxel.
+/// All objects of a map as it is stored, read tile by tile. Memory: 16 bytes a cluxel, of class-wide objects 8.
 std::vector<ObjectMembers> storedMembers(const rdf::ReadTransaction& transaction);
 
 /// Collects members from the layers of tiles that are not written yet.
@@ -51,7 +57,7 @@ class FormerObjects {
   MemberLists members_;
 };
 
-/// All objects of the map before the change, while its layers are not written yet. Memory: 8 bytes a cluxel.
+/// All objects of the map before the change, while its layers are not written yet. Memory as above.
 std::vector<ObjectMembers> formerObjects(const rdf::ReadTransaction& transaction, const OutputChanges& changes);
 
 }  // namespace cluxel::mapping

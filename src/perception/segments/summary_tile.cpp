@@ -137,22 +137,30 @@ SummaryTile readSeeds(TileReader& reader) {
   return tile;
 }
 
+void readMeans(TileReader& reader, SummaryTile& tile) {
+  tile.point_count = reader.getMany<std::uint32_t>(tile.size());
+  tile.mean = reader.getMany<Eigen::Vector3f>(tile.size());
+  reader.require(allWithin(tile.mean, kMaxHeight_m + kTileSize_m), "has a cluxel that is too far away");
+}
+
 }  // namespace
 
 SummaryTile seedsFromBytes(std::string_view bytes) {
   TileReader reader(bytes, "SUMM", 1);
-  return readSeeds(reader);
+  SummaryTile tile = readSeeds(reader);
+  readMeans(reader, tile);
+  tile.point_count.clear();
+  return tile;
 }
 
 SummaryTile summaryTileFromBytes(std::string_view bytes) {
   TileReader reader(bytes, "SUMM", 1);
   SummaryTile tile = readSeeds(reader);
   const std::size_t count = tile.size();
-  tile.point_count = reader.getMany<std::uint32_t>(count);
-  tile.mean = reader.getMany<Eigen::Vector3f>(count);
+  readMeans(reader, tile);
   tile.box_min = reader.getMany<Eigen::Vector3f>(count);
   tile.size_m = reader.getMany<Eigen::Vector3f>(count);
-  for (const auto* vectors : {&tile.mean, &tile.box_min, &tile.size_m})
+  for (const auto* vectors : {&tile.box_min, &tile.size_m})
     reader.require(allWithin(*vectors, kMaxHeight_m + kTileSize_m), "has a cluxel that is too far away");
   const auto views = reader.getMany<std::uint32_t>(count);
   tile.view_scan = reader.getMany<std::uint32_t>();

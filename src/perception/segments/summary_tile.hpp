@@ -45,7 +45,7 @@ SummaryTile summaryOf(const TilePoints& points, const CluxelTile& cluxels);
 std::string toBytes(const SummaryTile& tile);
 /// Throws Error (StoreUnavailable) when the bytes are damaged or of another kind.
 SummaryTile summaryTileFromBytes(std::string_view bytes);
-/// Reads only key, scans and seeds; all else is empty.
+/// Reads only key, scans, seeds and means; all else is empty.
 SummaryTile seedsFromBytes(std::string_view bytes);
 
 }  // namespace cluxel::perception

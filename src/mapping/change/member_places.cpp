@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+// A grid of the places that are asked for; each member of the others looks around itself.
+#include "mapping/change/member_places.hpp"
+
+#include <array>
+#include <cmath>
+#include <unordered_map>
+
+namespace cluxel::mapping {
+
+namespace {
+
+using Steps = std::array<std::int64_t, 3>;
+
+constexpr double kStep_m = 0.05;
+constexpr std::int64_t kNear = 6;  ///< steps
+static_assert(kNear * kStep_m > kSamePlace_m - 1e-9 && kNear * kStep_m < kSamePlace_m + 1e-9);
+constexpr int kBits = 21;  ///< of each coordinate
+constexpr std::int64_t kHalf = std::int64_t{1} << (kBits - 1), kMask = (std::int64_t{1} << kBits) - 1;
+
+Steps stepsOf(MemberPlace place) {
+  Steps steps{};
+  for (std::size_t axis = 0; axis < 3; ++axis) steps[axis] = static_cast<std::int64_t>(place >> (kBits * axis)) & kMask;
+  return steps;
+}
+
+std::int64_t squaredDistance(const Steps& a, const Steps& b) {
+  std::int64_t sum = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) sum += (a[axis] - b[axis]) * (a[axis] - b[axis]);
+  return sum;
+}
+
+/// A member whose seed no other object has, and the nearest member of another so far.
+struct Lookout {
+  std::uint32_t object = 0;
+  Steps steps{};
+  std::int64_t nearest = kNear * kNear;
+  std::uint32_t owner = kNoOwner;
+};
+
+class PlaceGrid {
+ public:
+  void add(const Lookout& lookout) {
+    cells_[cellOf(lookout.steps, {0, 0, 0})].push_back(lookouts_.size());
+    lookouts_.push_back(lookout);
+  }
+  const std::vector<Lookout>& lookouts() const { return lookouts_; }
+
+  template <typename IsBetter>
+  void offer(const Steps& steps, std::uint32_t owner, const IsBetter& is_better) {
+    for (std::int64_t x = -1; x <= 1; ++x)
+      for (std::int64_t y = -1; y <= 1; ++y)
+        for (std::int64_t z = -1; z <= 1; ++z) {
+          const auto cell = cells_.find(cellOf(steps, {x, y, z}));
+          if (cell == cells_.end()) continue;
+          for (const std::size_t number : cell->second) {
+            Lookout& lookout = lookouts_[number];
+            const std::int64_t distance = squaredDistance(lookout.steps, steps);
+            if (distance > lookout.nearest) continue;
+            if (distance == lookout.nearest && !is_better(owner, lookout.owner)) continue;
+            lookout.nearest = distance, lookout.owner = owner;
+          }
+        }
+  }
+
+ private:
+  static std::uint64_t cellOf(const Steps& steps, const Steps& shift) {
+    std::uint64_t cell = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      cell = cell << kBits | static_cast<std::uint64_t>(steps[axis] / kNear + shift[axis] + 1);
+    return cell;
+  }
+
+  std::vector<Lookout> lookouts_;
+  std::unordered_map<std::uint64_t, std::vector<std::size_t>> cells_;
+};
+
+}  // namespace
+
+MemberPlace placeOf(const Eigen::Vector3d& p_map) {
+  MemberPlace place = std::uint64_t{1} << 63U;
+  for (int axis = 0; axis < 3; ++axis)
+    place |= static_cast<MemberPlace>((std::llround(p_map[axis] / kStep_m) + kHalf) & kMask) << (kBits * axis);
+  return place;
+}
+
+std::vector<std::vector<SharedMembers>> sharedBySeedOrPlace(const ObjectList& some, const ObjectList& others) {
+  std::vector<std::map<std::uint32_t, std::size_t>> shared(some.size());
+  const SeedOwners owners(others);
+  PlaceGrid grid;
+  for (std::uint32_t object = 0; object < some.size(); ++object)
+    for (std::size_t member = 0; member < some[object]->seeds.size(); ++member) {
+      const std::uint32_t owner = owners.ownerOf(some[object]->seeds[member]);
+      if (owner != kNoOwner)
+        ++shared[object][owner];
+      else if (const MemberPlace place = some[object]->placeOf(member); place != kNoMemberPlace)
+        grid.add({object, stepsOf(place)});
+    }
+  for (std::uint32_t other = 0; other < others.size() && !grid.lookouts().empty(); ++other)
+    for (const MemberPlace place : others[other]->places)
+      if (place != kNoMemberPlace)
+        grid.offer(stepsOf(place), other,
+                   [&](std::uint32_t a, std::uint32_t b) { return b == kNoOwner || others[a]->id < others[b]->id; });
+  for (const Lookout& lookout : grid.lookouts())
+    if (lookout.owner != kNoOwner) ++shared[lookout.object][lookout.owner];
+  std::vector<std::vector<SharedMembers>> lists(some.size());
+  for (std::size_t object = 0; object < some.size(); ++object)
+    for (const auto& [other, count] : shared[object]) lists[object].push_back({other, count});
+  return lists;
+}
+
+}  // namespace cluxel::mapping

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where the cluxels of objects were: more scans of a place draw other seed points, and only the place tells what goes
+// on.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <map>
+#include <vector>
+
+#include "mapping/change/seed_owners.hpp"
+
+namespace cluxel::mapping {
+
+/// `p_map` [m] in steps of 5 cm. Within some 52 km of the origin no two places are the same.
+MemberPlace placeOf(const Eigen::Vector3d& p_map);
+
+/// The members that an object shares with one of the others.
+struct SharedMembers {
+  std::uint32_t other = 0;  ///< number in the list of the others
+  std::size_t count = 0;
+};
+
+/// For each of `some` objects, which of the others hold its members, ascending: by seed point or, where no other object
+/// has the seed, the one with the nearest member within kSamePlace_m. Equally near: the one with the smallest id. Cost:
+/// linear in the members.
+std::vector<std::vector<SharedMembers>> sharedBySeedOrPlace(const ObjectList& some, const ObjectList& others);
+
+/// A cluxel reaches 0.2 m from its seed, so that another one of the same points has its centre nearer than this.
+inline constexpr double kSamePlace_m = 0.3;
+
+}  // namespace cluxel::mapping
