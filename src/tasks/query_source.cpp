@@ -12,6 +12,7 @@
 #include "base/file_bytes.hpp"
 #include "base/nearest_name.hpp"
 #include "cluxel/error.hpp"
+#include "mapping/build/work_file.hpp"
 #include "rdf/io/rdf_io.hpp"
 #include "rdf/vocabulary.hpp"
 
@@ -116,7 +117,11 @@ Term termOf(const std::string& text) {
 }  // namespace
 
 QuerySource openQuerySource(const fs::path& file) {
-  if (!rdf::rdfFormatOf(file)) return {rdf::Environment::open(file, rdf::OpenMode::ReadOnly)};
+  if (!rdf::rdfFormatOf(file)) {
+    QuerySource source{rdf::Environment::open(file, rdf::OpenMode::ReadOnly)};
+    mapping::requireSomething(source.environment->read(), file);
+    return source;
+  }
   QuerySource source{rdf::Environment::temporary()};
   rdf::WriteTransaction transaction = source.environment->write();
   rdf::QuadWriter writer(transaction);

@@ -123,6 +123,17 @@ TEST_F(MapMerge, RefusesWhatHasNoOneAnswerAndLeavesNothing) {
   EXPECT_FALSE(fs::exists(target().string() + ".merging"));
 }
 
+TEST_F(MapMerge, ReplacesNoFileThatIsNoMap) {
+  const std::vector<MapToMerge> maps{{built({0}, "a")}, {built({1}, "b")}};
+  writeFile(target(), "what somebody wrote\n");
+  for (const bool force : {false, true}) {
+    MergeParams params;
+    params.force = force;
+    EXPECT_THROW(mergeMaps(maps, target(), params, silence()), Error);
+    EXPECT_EQ(readFile(target()), "what somebody wrote\n");
+  }
+}
+
 TEST_F(MapMerge, DoesNotCareWhereTheInputsWereRead) {
   const fs::path a = built({0, 1}, "a"), b = folder.path() / "b";
   MapInputs elsewhere = *inputs;

@@ -148,5 +148,20 @@ TEST(ShippedQuestions, HaveATitleAndExactlyTheColumnsThatTheySelect) {
   }
 }
 
+TEST(QuerySources, AFileThatHoldsNothingAnswersNothing) {
+  const ScratchFolder folder;
+  const std::filesystem::path file = folder.path() / "map.clx";
+  Environment::open(file, OpenMode::Create);  // as a build leaves it that is killed before its first commit
+  EXPECT_THROW(openQuerySource(file), Error);
+  {
+    WriteTransaction transaction = Environment::open(file, OpenMode::ReadWrite)->write();
+    QuadWriter writer(transaction);
+    writer.add({Term::iri("http://x/a"), Term::iri("http://x/p"), Term::literal("1"), Term::iri("")});
+    writer.flush();
+    transaction.commit();
+  }
+  EXPECT_EQ(openQuerySource(file).reader().size(), 1U);
+}
+
 }  // namespace
 }  // namespace cluxel::tasks

@@ -8,6 +8,7 @@
 #include "base/utc_time.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/build/stage_clock.hpp"
+#include "mapping/build/work_file.hpp"
 #include "mapping/change/map_things.hpp"
 #include "mapping/facts/map_history.hpp"
 #include "mapping/facts/semantic_layer.hpp"
@@ -80,6 +81,7 @@ sparql::UpdateReport updateMap(const std::filesystem::path& file, const std::str
   const rdf::InferenceCheck check = checkOf(options.query.budget, Clock::now());
   rdf::WriteTransaction transaction = rdf::writeMap(file);
   const bool is_map = requireFinished(file, transaction);
+  requireSomething(transaction, file);
   if (is_map && options.any_graph_writable)
     throw Error(ErrorKind::InvalidArgument, file.string() +
                                                 ": is a map, of which only the operator's statements may be "

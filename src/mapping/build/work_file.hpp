@@ -18,6 +18,11 @@ namespace cluxel::mapping {
 /// (StoreUnavailable) for what is no map.
 bool isToBuild(const std::filesystem::path& map);
 
+/// Whether the file is as a build leaves it that is killed before its first commit.
+bool holdsNothing(const rdf::ReadTransaction& transaction);
+/// Throws Error (StoreUnavailable) for such a file: it answers nothing.
+void requireSomething(const rdf::ReadTransaction& transaction, const std::filesystem::path& file);
+
 class WorkFile {
  public:
   /// Takes the build lock, inspects `map` and MAP.building, and opens the file to build in. Throws Error

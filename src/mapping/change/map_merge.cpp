@@ -79,6 +79,7 @@ class Merge {
     for (const MapToMerge& map : maps_) readers_.emplace_back(map.file);
     requireEqualInputs();
     base_ = largest();
+    requireMapOrNothing();
     if (fs::exists(target_) && !params_.force) return reportOfMerged();
     removeBeside();
     if (temporary_) sink_.note(noteOfCopy(target_));
@@ -99,6 +100,13 @@ class Merge {
         if (fs::equivalent(maps_[i].file, maps_[j].file))
           throw Error(ErrorKind::InvalidArgument, maps_[i].file.string() + ": is named twice");
     }
+  }
+
+  /// Another file is not replaced.
+  void requireMapOrNothing() const {
+    if (fs::is_directory(target_))
+      throw Error(ErrorKind::StoreUnavailable, target_.string() + ": is a folder, a map was expected");
+    if (fs::exists(target_) && !fs::is_empty(target_)) rdf::Environment::open(target_, rdf::OpenMode::ReadOnly);
   }
 
   void requireEqualInputs() const {

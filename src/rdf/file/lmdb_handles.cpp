@@ -12,7 +12,7 @@ namespace cluxel::rdf {
 namespace {
 
 constexpr std::string_view kDamaged =
-    "the map is damaged; run `cluxel doctor` for the location, restore a copy or build it again";
+    "the map is damaged; run `cluxel doctor` for the location, restore a copy, or remove the file and build it again";
 
 std::string explain(int code, std::string_view doing) {
   const std::string attempt = "cannot " + std::string(doing) + ": ";

@@ -98,7 +98,7 @@ void refuseFile(const std::filesystem::path& file, const std::string& what) {
 }
 
 void refuseDamaged(const std::filesystem::path& file, const std::string& what) {
-  refuseFile(file, "the map is damaged: " + what + "; restore a copy or build it again");
+  refuseFile(file, "the map is damaged: " + what + "; restore a copy, or remove the file and build it again");
 }
 
 void refuseIndex(const std::filesystem::path& file, Table index, const std::string& what) {
