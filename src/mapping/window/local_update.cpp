@@ -139,7 +139,7 @@ class LocalUpdate {
     if (!decision) {
       lacking.merge(tilesBeyond(window, change, changes_, transaction_, rules_run.layers()));
       std::erase_if(lacking, [&](const TileKey& tile) { return !map_.contains(tile) || window.tiles.contains(tile); });
-      needs_whole_map_ = !isTooSmall(lacking, window);
+      if (!isTooSmall(lacking, window)) needs_whole_map_ = true;
       return std::nullopt;
     }
     if (!statements.apply(window, change, *decision)) return std::nullopt;
