@@ -5,8 +5,8 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
-#include "cluxel/error.hpp"
 #include "mapping/build/tile_stages.hpp"
+#include "mapping/damaged_map.hpp"
 #include "mapping/facts/object_geometry.hpp"
 #include "mapping/layers/stored_layers.hpp"
 #include "rdf/vocabulary.hpp"
@@ -47,8 +47,7 @@ void addRegions(TileIterator first, TileIterator last, std::size_t max_cluxels, 
 }
 
 [[noreturn]] void failUnfit() {
-  throw Error(ErrorKind::StoreUnavailable,
-              "stored tiles and what was decided about them do not belong together; the map is damaged, build it anew");
+  refuseDamaged("stored tiles and what was decided about them do not belong together");
 }
 
 /// The tiles cover this in plan view [m].

@@ -5,9 +5,9 @@
 #include <array>
 
 #include "base/free_memory.hpp"
-#include "cluxel/error.hpp"
 #include "mapping/build/recent_scans.hpp"
 #include "mapping/build/way_tiles.hpp"
+#include "mapping/damaged_map.hpp"
 #include "mapping/map_tables.hpp"
 
 namespace cluxel::mapping {
@@ -27,13 +27,6 @@ std::string_view tableOf(Stage stage) {
 /// With more points in memory, these are given up before a window is assembled, which does not read them.
 constexpr std::size_t kPointsBeside = 1'000'000;
 
-/// A block names its tile, which later stages look up.
-template <typename Tile>
-Tile checked(const TileKey& key, Tile tile) {
-  if (tile.key == key) return tile;
-  throw Error(ErrorKind::StoreUnavailable, "a stored tile has the block of another; the map is damaged, build it anew");
-}
-
 /// Reads stored outputs; what is computed from other outputs comes after them.
 class OutputReader {
  public:
@@ -52,11 +45,11 @@ class OutputReader {
   void readPoints(const TileSet& keys) {
     perception::PointsFromScans from_scans;
     each(Stage::Points, keys, out_.points, [&](const TileKey& key, std::string_view bytes) {
-      from_scans.add(out_.points.emplace(key, checked(key, perception::tilePointsFromBytes(bytes))).first->second);
+      from_scans.add(out_.points.emplace(key, ofTile(key, perception::tilePointsFromBytes(bytes))).first->second);
     });
     fill(from_scans);
     each(Stage::Cluxels, keys, out_.cluxels, [&](const TileKey& key, std::string_view bytes) {
-      out_.cluxels.emplace(key, checked(key, perception::cluxelTileFromBytes(bytes, required(out_.points, key))));
+      out_.cluxels.emplace(key, ofTile(key, perception::cluxelTileFromBytes(bytes, required(out_.points, key))));
     });
   }
 
@@ -74,7 +67,7 @@ class OutputReader {
 
  private:
   void readFeatures(const TileKey& key, std::string_view bytes, std::size_t cluxels) {
-    out_.features.emplace(key, checked(key, perception::featureTileFromBytes(bytes, cluxels)));
+    out_.features.emplace(key, ofTile(key, perception::featureTileFromBytes(bytes, cluxels)));
   }
 
   void readLabelled(const TileSet& keys) {
@@ -95,20 +88,19 @@ class OutputReader {
   template <typename Tiles, typename Decode>
   void plain(Stage stage, const TileSet& keys, Tiles& tiles, const Decode& decode) {
     each(stage, keys, tiles,
-         [&](const TileKey& key, std::string_view bytes) { tiles.emplace(key, checked(key, decode(bytes))); });
+         [&](const TileKey& key, std::string_view bytes) { tiles.emplace(key, ofTile(key, decode(bytes))); });
   }
 
   template <typename Tiles>
   static const typename Tiles::mapped_type& required(const Tiles& tiles, const TileKey& key) {
     if (const auto found = tiles.find(key); found != tiles.end()) return found->second;
-    throw Error(ErrorKind::StoreUnavailable, "a stored tile lacks a block; the map is damaged, build it anew");
+    refuseIncompleteTile();
   }
 
   void fill(const perception::PointsFromScans& tiles) {
     for (const scan::ScanId& id : tiles.scans()) {
       if (!storedCloud(transaction_, id))
-        throw Error(ErrorKind::StoreUnavailable,
-                    "a stored tile names scan " + id.hex() + ", which is not there; the map is damaged, build it anew");
+        refuseDamaged("a stored tile names scan " + id.hex() + ", which is not there");
       tiles.fill(scans_.scan(id));
     }
   }
@@ -174,8 +166,7 @@ class OtherMap final : public perception::OutputDonor {
 
   const TileSet& tiles() const override { return tiles_; }
   std::string_view bytes(Stage stage, const TileKey& key) const override {
-    if (const auto block = transaction_.block(tableOf(stage), tables::keyOf(key))) return *block;
-    throw Error(ErrorKind::StoreUnavailable, "a stored tile lacks a block; the map is damaged, build it anew");
+    return requiredBlock(transaction_, tableOf(stage), key);
   }
   void load(const TileSet& keys, perception::TileOutputs& outputs) const override {
     OutputReader(transaction_, scans_, outputs).read(keys);

@@ -5,8 +5,8 @@
 #include <map>
 
 #include "base/parallel.hpp"
-#include "cluxel/error.hpp"
 #include "mapping/build/scan_store.hpp"
+#include "mapping/damaged_map.hpp"
 #include "mapping/map_tables.hpp"
 #include "mapping/ways/way_stage.hpp"
 
@@ -17,17 +17,6 @@ namespace {
 using perception::EvenTile;
 using perception::TileKey;
 using Bytes = std::map<TileKey, std::string>;
-
-std::string_view blockOf(const rdf::ReadTransaction& transaction, std::string_view table, const TileKey& key) {
-  if (const auto bytes = transaction.block(table, tables::keyOf(key))) return *bytes;
-  throw Error(ErrorKind::StoreUnavailable, "a stored tile lacks a block; the map is damaged, build it anew");
-}
-
-template <typename Tile>
-Tile ofTile(const TileKey& key, Tile tile) {
-  if (tile.key == key) return tile;
-  throw Error(ErrorKind::StoreUnavailable, "a stored tile has the block of another; the map is damaged, build it anew");
-}
 
 /// Consecutive tiles, in as many sets as there are threads.
 std::vector<TileSet> sharesOf(const TileSet& tiles, std::size_t threads) {
@@ -102,8 +91,8 @@ class WayUpdate {
   BlockInputs inputsOf(const TileSet& block, bool with_surfaces) const {
     BlockInputs inputs{block, withRing(block, all_), {}, {}};
     for (const TileKey& key : inputs.context) {
-      if (!fresh_.contains(key)) inputs.even.emplace(key, blockOf(transaction_, tables::kEven, key));
-      if (with_surfaces) inputs.surfaces.emplace(key, blockOf(transaction_, tables::kSurfaces, key));
+      if (!fresh_.contains(key)) inputs.even.emplace(key, requiredBlock(transaction_, tables::kEven, key));
+      if (with_surfaces) inputs.surfaces.emplace(key, requiredBlock(transaction_, tables::kSurfaces, key));
     }
     return inputs;
   }
@@ -154,7 +143,7 @@ TileSet updateWayTiles(rdf::WriteTransaction& transaction, const TileSet& change
 WayGraph storedWays(const rdf::ReadTransaction& transaction) {
   std::vector<WayTile> tiles;
   for (const TileKey& key : storedTiles(transaction))
-    tiles.push_back(ofTile(key, wayTileFromBytes(blockOf(transaction, tables::kWays, key))));
+    tiles.push_back(ofTile(key, wayTileFromBytes(requiredBlock(transaction, tables::kWays, key))));
   return mergedWays(tiles);
 }
 

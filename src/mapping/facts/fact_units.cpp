@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "cluxel/error.hpp"
+#include "mapping/damaged_map.hpp"
 #include "mapping/map_tables.hpp"
 
 namespace cluxel::mapping {
@@ -26,7 +26,7 @@ std::string stampOf(const rdf::QuadReader& quads, rdf::TermId graph) {
 }
 
 [[noreturn]] void failDamaged() {
-  throw Error(ErrorKind::StoreUnavailable, "a stored unit of facts is cut short; the map is damaged, build it anew");
+  refuseDamaged("a stored unit of facts is cut short");
 }
 
 std::string bytesOf(const FactUnit& unit) {

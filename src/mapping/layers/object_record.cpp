@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/packing/zstd_packing.hpp"
-#include "cluxel/error.hpp"
+#include "mapping/damaged_map.hpp"
 
 namespace cluxel::mapping {
 
@@ -65,8 +65,7 @@ ObjectRecord objectRecordFromBytes(std::string_view bytes) {
     return {json.at("class"), json.at("rule"), json.at("confidence"), json.at("class_wide"),
             tilesFrom(json.at("tiles"))};
   } catch (const std::exception& fault) {
-    throw Error(ErrorKind::StoreUnavailable, std::string("a stored object cannot be read (") + fault.what() +
-                                                 "); the map is damaged, build it anew");
+    refuseDamaged(std::string("a stored object cannot be read (") + fault.what() + ")");
   }
 }
 

@@ -7,6 +7,7 @@
 #include <unordered_map>
 
 #include "cluxel/error.hpp"
+#include "mapping/damaged_map.hpp"
 #include "mapping/map_tables.hpp"
 
 namespace cluxel::mapping {
@@ -14,8 +15,7 @@ namespace cluxel::mapping {
 namespace {
 
 [[noreturn]] void failUnfit(const char* what) {
-  throw Error(ErrorKind::StoreUnavailable,
-              std::string("the map's objects cannot be read: ") + what + "; the map is damaged, build it anew");
+  refuseDamaged(std::string("the map's objects cannot be read: ") + what);
 }
 
 /// Maps of earlier versions hold all objects in one block.

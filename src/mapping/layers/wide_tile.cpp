@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/convex_hull.hpp"
+#include "mapping/damaged_map.hpp"
 #include "mapping/map_tables.hpp"
 #include "perception/tile_bytes.hpp"
 
@@ -144,10 +145,7 @@ void replaceWideTiles(rdf::WriteTransaction& transaction, const std::vector<Wide
 std::vector<WideTile> storedWideTiles(const rdf::ReadTransaction& transaction) {
   std::vector<WideTile> tiles;
   transaction.forEachBlock(tables::kWideTiles, "", [&](std::string_view key, std::string_view bytes) {
-    tiles.push_back(wideTileFromBytes(bytes));
-    if (tiles.back().key != tables::tileOfKey(key))
-      throw Error(ErrorKind::StoreUnavailable,
-                  "a stored tile has the block of another; the map is damaged, build it anew");
+    tiles.push_back(ofTile(tables::tileOfKey(key), wideTileFromBytes(bytes)));
   });
   return tiles;
 }

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "cluxel/error.hpp"
+#include "mapping/damaged_map.hpp"
 #include "mapping/layers/stored_layers.hpp"
 #include "mapping/map_tables.hpp"
 
@@ -100,10 +101,7 @@ class SceneNumbers {
   };
 
   static void require(bool holds) {
-    if (!holds)
-      throw Error(
-          ErrorKind::StoreUnavailable,
-          "an object that a statement changed is of tiles that are not there; the map is damaged, build it anew");
+    if (!holds) refuseDamaged("an object that a statement changed is of tiles that are not there");
   }
 
   std::vector<ContentHash> primitives_;  ///< ascending

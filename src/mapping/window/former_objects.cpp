@@ -2,25 +2,16 @@
 // Layers number cluxels as the summaries of the same commit do.
 #include "mapping/window/former_objects.hpp"
 
-#include "cluxel/error.hpp"
 #include "mapping/change/member_places.hpp"
+#include "mapping/damaged_map.hpp"
 #include "mapping/layers/stored_layers.hpp"
 #include "mapping/map_tables.hpp"
 
 namespace cluxel::mapping {
 
-namespace {
-
-[[noreturn]] void refuseMissingBlock() {
-  throw Error(ErrorKind::StoreUnavailable, "a stored tile lacks a block; the map is damaged, build it anew");
-}
-
-}  // namespace
-
 void MemberLists::add(const TileLayer& layer, const perception::SummaryTile& summary, bool has_places,
                       const std::function<bool(const ContentHash&)>& is_wanted) {
-  if (layer.size() != summary.size())
-    throw Error(ErrorKind::StoreUnavailable, "stored objects are of other cluxels; the map is damaged, build it anew");
+  if (layer.size() != summary.size()) refuseDamaged("stored objects are of other cluxels");
   std::vector<Collected*> of_share;
   for (const TileLayer::Share& share : layer.shares) {
     of_share.push_back(nullptr);
@@ -56,9 +47,8 @@ std::vector<ObjectMembers> MemberLists::take() {
 std::vector<ObjectMembers> storedMembers(const rdf::ReadTransaction& transaction) {
   MemberLists members(transaction);
   forEachStoredLayer(transaction, [&](const TileLayer& layer) {
-    const auto summary = transaction.block(tables::kSummaries, tables::keyOf(layer.key));
-    if (!summary) refuseMissingBlock();
-    members.add(layer, perception::seedsFromBytes(*summary), true, [](const ContentHash&) { return true; });
+    const std::string_view summary = requiredBlock(transaction, tables::kSummaries, layer.key);
+    members.add(layer, perception::seedsFromBytes(summary), true, [](const ContentHash&) { return true; });
   });
   return members.take();
 }
@@ -66,7 +56,7 @@ std::vector<ObjectMembers> storedMembers(const rdf::ReadTransaction& transaction
 const perception::SummaryTile* FormerObjects::summaryOf(const perception::TileKey& tile) const {
   if (former_.isOther(tile)) return former_.of(tile);
   const auto same = stages_.summaries().find(tile);
-  if (same == stages_.summaries().end()) refuseMissingBlock();
+  if (same == stages_.summaries().end()) refuseIncompleteTile();
   return &same->second;
 }
 
@@ -81,10 +71,9 @@ std::vector<ObjectMembers> formerObjects(const rdf::ReadTransaction& transaction
     const auto changed = changes.former_summaries.find(layer.key);
     const bool is_other = changed != changes.former_summaries.end();
     if (is_other && !changed->second) return;
-    const auto summary = is_other ? std::optional<std::string_view>(*changed->second)
-                                  : transaction.block(tables::kSummaries, tables::keyOf(layer.key));
-    if (!summary) refuseMissingBlock();
-    members.add(layer, perception::seedsFromBytes(*summary), is_other, [](const ContentHash&) { return true; });
+    const std::string_view summary =
+        is_other ? std::string_view(*changed->second) : requiredBlock(transaction, tables::kSummaries, layer.key);
+    members.add(layer, perception::seedsFromBytes(summary), is_other, [](const ContentHash&) { return true; });
   });
   return members.take();
 }

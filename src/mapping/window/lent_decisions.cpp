@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "cluxel/error.hpp"
 #include "mapping/build/scan_store.hpp"
+#include "mapping/damaged_map.hpp"
 #include "mapping/layers/stored_layers.hpp"
 #include "mapping/map_tables.hpp"
 #include "mapping/statements/overruled_objects.hpp"
@@ -70,10 +70,6 @@ double likelyShareDecided(const TileSet& own, const TileSet& of_lender) {
   for (int ring = 0; ring < kRingsDecided; ++ring) decided = perception::withRing(decided, all);
   if (all.empty()) return 0;
   return static_cast<double>(decided.size()) / static_cast<double>(all.size());
-}
-
-[[noreturn]] void refuseIncompleteTile() {
-  throw Error(ErrorKind::StoreUnavailable, "a stored tile lacks a block; the map is damaged, build it anew");
 }
 
 TileLayer requiredLayer(const rdf::ReadTransaction& map, const TileKey& tile) {
@@ -199,13 +195,11 @@ void LentDecisions::noteChanges(OutputChanges& changes, TileStages& stages) cons
   TileSet same_even;
   for (const TileKey& tile : lent_) {
     if (haveSameOutput(transaction_, lender_, perception::Stage::Even, tile)) same_even.insert(tile);
-    const std::string key = tables::keyOf(tile);
-    const auto former = lender_.block(tables::kSummaries, key);
-    if (!former) refuseIncompleteTile();
-    if (former == transaction_.block(tables::kSummaries, key))
+    const std::string_view former = requiredBlock(lender_, tables::kSummaries, tile);
+    if (former == transaction_.block(tables::kSummaries, tables::keyOf(tile)))
       changes.former_summaries.erase(tile);
     else
-      changes.former_summaries.insert_or_assign(tile, std::string(*former));
+      changes.former_summaries.insert_or_assign(tile, std::string(former));
     if (haveSameOutputs(transaction_, lender_, tile)) changes.tiles.erase(tile);
   }
   changes.tiles.insert(seam_.begin(), seam_.end());

@@ -7,7 +7,7 @@
 #include <iterator>
 #include <unordered_map>
 
-#include "cluxel/error.hpp"
+#include "mapping/damaged_map.hpp"
 #include "mapping/layers/stored_layers.hpp"
 #include "perception/segments/primitive_inputs.hpp"
 
@@ -52,10 +52,7 @@ bool readLayers(const rdf::ReadTransaction& transaction, const OutputChanges& ch
 }
 
 void requireFit(bool holds) {
-  if (!holds)
-    throw Error(
-        ErrorKind::StoreUnavailable,
-        "stored tiles and what was decided about them do not belong together; the map is damaged, build it anew");
+  if (!holds) refuseDamaged("stored tiles and what was decided about them do not belong together");
 }
 
 /// Layers must be of the cluxels and components that the tiles had when they were written.
