@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // A build, a watch or a compaction that is killed at any moment leaves an exact map; the same command finishes it.
 #include "base/file_bytes.hpp"
+#include "cluxel/error.hpp"
+#include "mapping/build/map_update.hpp"
+#include "mapping/build/work_file.hpp"
 #include "mapping/change/folder_watch.hpp"
 #include "mapping/change/map_compaction.hpp"
 #include "mapping/change/statement_change.hpp"
@@ -93,6 +96,12 @@ TEST_F(KilledBuild, AChangeThatIsCompactedIsAllOrNothing) {
   fs::copy_file(kept, map(), fs::copy_options::overwrite_existing);
   retractScans(map(), {id}, {}, silence());
   EXPECT_LT(fs::file_size(map()) + 19'000'000, sparse) << "the change was not compacted";
+}
+
+TEST_F(KilledBuild, LeavesAFileThatIsNotUpdatedBeforeItsFirstCommit) {
+  rdf::Environment::open(map(), rdf::OpenMode::Create);
+  EXPECT_THROW(updateMap(map(), "INSERT DATA { <urn:a> <urn:b> 1 }", {}, silence()), Error);
+  EXPECT_TRUE(isToBuild(map()));
 }
 
 }  // namespace

@@ -14,7 +14,6 @@
 #include "cluxel/error.hpp"
 #include "mapping/build/map_update.hpp"
 #include "mapping/build/scan_store.hpp"
-#include "mapping/build/work_file.hpp"
 #include "mapping/facts/map_history.hpp"
 #include "mapping/map_state.hpp"
 #include "mapping/small_campus.hpp"
@@ -345,14 +344,6 @@ TEST(MapReaderSnapshot, IsOneForBlocksAndQuads) {
   stop = true;
   writer.join();
   EXPECT_EQ(torn, 0);
-}
-
-TEST_F(UnfinishedBuild, IsNotInTheWayOfItselfWhenNothingWasCommitted) {
-  const ScratchFolder scratch;
-  const fs::path file = scratch.path() / "map.clx";
-  Environment::open(file, OpenMode::Create);
-  EXPECT_THROW(updateMap(file, "INSERT DATA { <urn:a> <urn:b> 1 }", {}, silence()), Error);
-  EXPECT_TRUE(isToBuild(file));
 }
 
 }  // namespace
