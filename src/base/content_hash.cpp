@@ -21,6 +21,16 @@ const EVP_MD* sha256() {
   return algorithm.get();
 }
 
+std::string hexOf(std::span<const std::uint8_t> bytes) {
+  constexpr std::string_view digits = "0123456789abcdef";
+  std::string text;
+  for (const std::uint8_t byte : bytes) {
+    text += digits[byte >> 4U];
+    text += digits[byte & 15U];
+  }
+  return text;
+}
+
 }  // namespace
 
 struct ContentHasher::State {
@@ -52,14 +62,16 @@ ContentHash ContentHasher::finish() {
   return hash;
 }
 
+std::string sha256Of(std::string_view text) {
+  std::array<std::uint8_t, EVP_MAX_MD_SIZE> digest{};
+  unsigned size = 0;
+  if (EVP_Digest(text.data(), text.size(), digest.data(), &size, sha256(), nullptr) != 1)
+    throw std::runtime_error("OpenSSL offers no SHA-256");
+  return hexOf(std::span(digest).first(size));
+}
+
 std::string ContentHash::hex() const {
-  constexpr std::string_view digits = "0123456789abcdef";
-  std::string text;
-  for (const std::uint8_t byte : bytes) {
-    text += digits[byte >> 4U];
-    text += digits[byte & 15U];
-  }
-  return text;
+  return hexOf(bytes);
 }
 
 ContentHash ContentHash::fromHex(std::string_view digits) {

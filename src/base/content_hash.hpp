@@ -59,6 +59,9 @@ class ContentHasher {
   std::unique_ptr<State> state_;
 };
 
+/// The whole SHA-256 of a text: 64 lower-case hexadecimal digits.
+std::string sha256Of(std::string_view text);
+
 }  // namespace cluxel
 
 template <>

@@ -8,6 +8,7 @@
 #include "base/file_bytes.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/build/map_update.hpp"
+#include "mapping/build/operator_statements.hpp"
 #include "mapping/change/map_change.hpp"
 #include "mapping/small_campus.hpp"
 #include "sparql/query_engine.hpp"
@@ -107,6 +108,26 @@ TEST_F(MapMerge, KeepsTheStatementsOfAllMaps) {
   const auto both =
       sparql::evaluateQuery(map.quads(), "ASK { ?x <http://www.w3.org/2000/01/rdf-schema#label> 'one', 'two' }", {});
   EXPECT_FALSE(both.boolean) << "blank nodes of two maps are two things";
+}
+
+TEST_F(MapMerge, SaysOnceWhatTheMapsSayOfBlankNodes) {
+  const fs::path a = built({0, 1}, "a"), b = built({2, 3}, "b"), turned = folder.path() / "turned";
+  const auto insert = [](const fs::path& map, const std::string& quads) {
+    updateMap(map, "INSERT DATA { " + quads + " }", {}, silence());
+  };
+  insert(a, "[] <http://x/p> 'x' . [] <http://x/p> [ <http://x/q> 1 ]");
+  insert(b, "[] <http://x/p> 'y'");
+  insert(b, "[] <http://x/p> 'x'");
+  merge({{a}, {b}});
+  mergeMaps({{b}, {a}}, turned, {}, silence());
+  const std::string text = canonicalText(target());
+  EXPECT_EQ(canonicalText(turned), text) << "in either order";
+  const MapReader map(target());
+  EXPECT_EQ(operatorStatements(map.quads()).size(), 4U);
+  const fs::path again = folder.path() / "again";
+  mergeMaps({{target()}, {a}}, again, {}, silence());
+  EXPECT_EQ(canonicalText(again), text) << "an old copy says nothing new";
+  EXPECT_EQ(mergeMaps({{target()}, {a}}, again, {}, silence()).scans_added, 0U) << "it is known as the merge";
 }
 
 TEST_F(MapMerge, RefusesWhatHasNoOneAnswerAndLeavesNothing) {

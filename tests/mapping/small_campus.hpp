@@ -62,7 +62,7 @@ class SmallCampus {
 /// Sorted N-Quads without the history graph: equal texts mean equal maps.
 inline std::string canonicalText(const MapReader& map) {
   std::string text;
-  writeSortedNQuads(
+  writeCanonicalNQuads(
       map.quads(), [&](std::string_view piece) { text.append(piece); },
       [](const Quad& quad) { return quad.graph.text != vocabulary::kGraphHistory; });
   return text;

@@ -51,13 +51,19 @@ void addExport(CLI::App& app, Session& session) {
       else
         bytes.append(piece);
     };
+    bool is_exact = true;
     if (const auto store = storeWithoutScans(options->map); store && isRdf(format)) {
-      exportQuads(*store, format, write);
+      is_exact = exportQuads(*store, format, write);
     } else {
       const mapping::MapReader map(options->map);
       noteUnfinished(options->map, map.isFinished(), options->allow_unfinished, session);
-      exportMap(map, format, write, options->local ? tasks::ExportFrame::Local : tasks::ExportFrame::LongitudeLatitude);
+      is_exact = exportMap(map, format, write,
+                           options->local ? tasks::ExportFrame::Local : tasks::ExportFrame::LongitudeLatitude);
     }
+    if (!is_exact)
+      session.console.note(options->map.string() +
+                           ": its blank nodes are too much alike for canonical labels and keep those of the store, so "
+                           "that an equal map may have other bytes");
     if (!to_stdout) writeFile(options->output, bytes);
     return ExitCode::Done;
   });

@@ -2,6 +2,12 @@
 // Quads are copied by their terms: term ids differ between stores.
 #include "mapping/build/operator_statements.hpp"
 
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include "base/disjoint_sets.hpp"
+#include "rdf/io/canonical_labels.hpp"
 #include "rdf/vocabulary.hpp"
 
 namespace cluxel::mapping {
@@ -12,13 +18,64 @@ Term withSuffix(const Term& term, const std::string& suffix) {
   return term.kind == TermKind::BlankNode && !suffix.empty() ? Term::blank(term.text + suffix) : term;
 }
 
+bool isBlank(const Term& term) {
+  return term.kind == TermKind::BlankNode;
+}
+
+/// Quads that name blank nodes which belong together, in lists of their own; each other quad alone.
+std::vector<std::vector<Quad>> togetherIn(const std::vector<Quad>& quads) {
+  std::map<std::string, std::uint32_t> number;
+  for (const Quad& quad : quads)
+    for (const Term* term : {&quad.subject, &quad.object})
+      if (isBlank(*term)) number.emplace(term->text, static_cast<std::uint32_t>(number.size()));
+  DisjointSets sets(number.size());
+  for (const Quad& quad : quads)
+    if (isBlank(quad.subject) && isBlank(quad.object))
+      sets.join(number.at(quad.subject.text), number.at(quad.object.text));
+  std::map<std::uint32_t, std::vector<Quad>> of_blanks;
+  std::vector<std::vector<Quad>> lists;
+  for (const Quad& quad : quads) {
+    if (!isBlank(quad.subject) && !isBlank(quad.object))
+      lists.push_back({quad});
+    else
+      of_blanks[sets.find(number.at((isBlank(quad.subject) ? quad.subject : quad.object).text))].push_back(quad);
+  }
+  for (auto& [root, list] : of_blanks) lists.push_back(std::move(list));
+  return lists;
+}
+
+/// Blank nodes that are too much alike for canonical labels keep theirs.
+std::string sayingOf(std::vector<Quad> together) {
+  const std::map<std::string, std::string> labels = rdf::canonicalLabels(together);
+  std::vector<std::string> lines;
+  for (Quad& quad : together) {
+    for (Term* term : {&quad.subject, &quad.object})
+      if (isBlank(*term) && !labels.empty()) term->text = labels.at(term->text);
+    lines.push_back(toNQuads(quad));
+  }
+  std::sort(lines.begin(), lines.end());
+  std::string text;
+  for (const std::string& line : lines) text += line;
+  return text;
+}
+
 }  // namespace
+
+std::set<std::string> sayingsOf(const std::vector<Quad>& quads) {
+  std::set<std::string> sayings;
+  for (const std::vector<Quad>& together : togetherIn(quads)) sayings.insert(sayingOf(together));
+  return sayings;
+}
 
 std::uint64_t copyOperatorStatements(const rdf::QuadReader& from, rdf::WriteTransaction& into,
                                      const std::string& blank_suffix) {
-  const std::vector<Quad> quads = operatorStatements(from, blank_suffix);
-  addOperatorStatements(into, quads);
-  return quads.size();
+  const rdf::QuadReader there(static_cast<const rdf::ReadTransaction&>(into));
+  const std::set<std::string> known = sayingsOf(operatorStatements(there));
+  std::vector<Quad> added;
+  for (const std::vector<Quad>& together : togetherIn(operatorStatements(from, blank_suffix)))
+    if (!known.contains(sayingOf(together))) added.insert(added.end(), together.begin(), together.end());
+  addOperatorStatements(into, added);
+  return added.size();
 }
 
 void addOperatorStatements(rdf::WriteTransaction& transaction, const std::vector<Quad>& quads) {

@@ -158,7 +158,7 @@ class Merge {
       }
       std::map<scan::ScanId, ScanInputs> merged;
       addScansOf(target, Eigen::Isometry3d::Identity(), merged);
-      return merged == scans && linesOf(operatorStatements(target.quads())) == statementsOfResult();
+      return merged == scans && sayingsOf(operatorStatements(target.quads())) == sayingsOfResult();
     } catch (const Error&) {
       return false;  // no map, or one of another version
     }
@@ -185,19 +185,16 @@ class Merge {
     return true;
   }
 
-  static std::set<std::string> linesOf(const std::vector<Quad>& quads) {
-    std::set<std::string> lines;
-    for (const Quad& quad : quads) lines.insert(toNQuads(quad));
-    return lines;
-  }
-  /// The operator's statements of the result.
-  std::set<std::string> statementsOfResult() const {
-    std::set<std::string> withdrawn, lines;
+  /// What graph `operator` of the result says.
+  std::set<std::string> sayingsOfResult() const {
+    std::set<std::string> withdrawn, sayings;
     for (const ContentHash& id : withdrawnAmong(quadsOfMaps())) withdrawn.insert(rdf::iriOfStatement(id));
-    for (std::size_t i = 0; i < maps_.size(); ++i)
-      for (const Quad& quad : operatorStatements(readers_[i].quads(), blankSuffixOf(i)))
-        if (!withdrawn.contains(quad.subject.text)) lines.insert(toNQuads(quad));
-    return lines;
+    for (const MapReader& reader : readers_) {
+      std::vector<Quad> quads = operatorStatements(reader.quads());
+      std::erase_if(quads, [&](const Quad& quad) { return withdrawn.contains(quad.subject.text); });
+      sayings.merge(sayingsOf(quads));
+    }
+    return sayings;
   }
 
   /// Of the maps in the frame of the result, the one with most points: its scans need no new stages.

@@ -60,6 +60,10 @@ const RdfPrefixes& commonPrefixes();
 /// that `keep` accepts.
 void writeSortedNQuads(const QuadReader& reader, const TextSink& out,
                        const std::function<bool(const Quad&)>& keep = {});
+/// The same with the canonical labels of blank nodes (canonicalLabels()): what is written follows from the dataset
+/// alone. False when the blank nodes were too much alike for that, and kept the labels that the store has.
+bool writeCanonicalNQuads(const QuadReader& reader, const TextSink& out,
+                          const std::function<bool(const Quad&)>& keep = {});
 /// N-Quads of all graphs, or the triples of one as N-Triples, in the order of the store. Memory does not grow with it.
 void writeStoredNQuads(const QuadReader& reader, const std::optional<Term>& graph, const TextSink& out);
 /// Turtle of one graph, or of the union of all graphs but history when `graph` is absent. Subjects are sorted by term,

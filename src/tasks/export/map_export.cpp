@@ -24,23 +24,24 @@ bool isRdf(ExportFormat format) {
   return format == ExportFormat::Turtle || format == ExportFormat::NQuads || format == ExportFormat::Canonical;
 }
 
-void exportQuads(const rdf::QuadReader& quads, ExportFormat format, const ByteSink& out) {
-  if (format == ExportFormat::Turtle) return writeTurtle(quads, std::nullopt, out);
-  if (format == ExportFormat::NQuads) return writeSortedNQuads(quads, out);
-  writeSortedNQuads(quads, out, [](const Quad& quad) { return quad.graph.text != rdf::vocabulary::kGraphHistory; });
+bool exportQuads(const rdf::QuadReader& quads, ExportFormat format, const ByteSink& out) {
+  if (format == ExportFormat::Canonical)
+    return writeCanonicalNQuads(quads, out,
+                                [](const Quad& quad) { return quad.graph.text != rdf::vocabulary::kGraphHistory; });
+  if (format == ExportFormat::Turtle)
+    writeTurtle(quads, std::nullopt, out);
+  else
+    writeSortedNQuads(quads, out);
+  return true;
 }
 
-void exportMap(const mapping::MapReader& map, ExportFormat format, const ByteSink& out, ExportFrame frame) {
-  switch (format) {
-    case ExportFormat::Turtle:
-    case ExportFormat::NQuads:
-    case ExportFormat::Canonical:
-      return exportQuads(map.quads(), format, out);
-    case ExportFormat::Ply:
-      return writeColouredPly(map, out);
-    case ExportFormat::GeoJson:
-      return writeFootprints(map, frame, out);
-  }
+bool exportMap(const mapping::MapReader& map, ExportFormat format, const ByteSink& out, ExportFrame frame) {
+  if (isRdf(format)) return exportQuads(map.quads(), format, out);
+  if (format == ExportFormat::Ply)
+    writeColouredPly(map, out);
+  else
+    writeFootprints(map, frame, out);
+  return true;
 }
 
 }  // namespace cluxel::tasks

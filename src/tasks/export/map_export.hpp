@@ -25,16 +25,18 @@ enum class ExportFrame : std::uint8_t {
 using ByteSink = std::function<void(std::string_view)>;
 
 /// Writes the map to `out`:
-/// Turtle: the union of all graphs but history. NQuads: all graphs. Canonical: sorted N-Quads without history; equal
-/// bytes mean equal maps. Ply: all points in the map frame [m] with the colour of their object's class, and as scalar
-/// fields the object's number (its place in objects(), -1: none) and the primitive label. GeoJson: one footprint per
-/// object in `frame`; throws Error (Remedy::LocalFrame) when the map cannot be placed on the earth.
-void exportMap(const mapping::MapReader& map, ExportFormat format, const ByteSink& out,
+/// Turtle: the union of all graphs but history. NQuads: all graphs. Canonical: sorted N-Quads without history, with
+/// canonical labels of blank nodes; equal bytes mean equal maps. Ply: all points in the map frame [m] with the colour
+/// of their object's class, and as scalar fields the object's number (its place in objects(), -1: none) and the
+/// primitive label. GeoJson: one footprint per object in `frame`; throws Error (Remedy::LocalFrame) when the map cannot
+/// be placed on the earth. False for Canonical when blank nodes are too much alike for canonical labels, so that equal
+/// maps may have other bytes.
+bool exportMap(const mapping::MapReader& map, ExportFormat format, const ByteSink& out,
                ExportFrame frame = ExportFrame::LongitudeLatitude);
 
 /// Turtle, NQuads and Canonical need no more than quads.
 bool isRdf(ExportFormat format);
 /// As exportMap(), in one of these formats, also for a store that no build has made.
-void exportQuads(const rdf::QuadReader& quads, ExportFormat format, const ByteSink& out);
+bool exportQuads(const rdf::QuadReader& quads, ExportFormat format, const ByteSink& out);
 
 }  // namespace cluxel::tasks
