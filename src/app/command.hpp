@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the subcommands share: the program's options, the console, validators, and how a command returns its exit code.
+// What the subcommands share: the program's options, the console, and how a command returns its exit code.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -11,6 +11,7 @@
 
 #include "app/console/progress_line.hpp"
 #include "app/exit_code.hpp"
+#include "app/option_checks.hpp"
 #include "base/installation/data_home.hpp"
 #include "cluxel/progress.hpp"
 
@@ -50,15 +51,6 @@ struct Session {
 
 /// Gives a subcommand its `run`, whose result becomes the exit code.
 void onRun(CLI::App& command, Session& session, std::function<ExitCode()> run);
-
-/// For options that take a number above 0.
-CLI::Validator above0();
-/// For options that take a share: a number from 0 to 1.
-CLI::Validator share();
-/// For options that take an unsigned 64-bit number. CLI11 alone would truncate or wrap others.
-CLI::Validator whole();
-/// For names of output: an empty name usually comes from an unset shell variable.
-CLI::Validator named();
 
 /// Data to stdout, with a line end. A closed pipe is not an error.
 void print(std::string_view text);

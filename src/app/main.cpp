@@ -72,7 +72,7 @@ int runProgram(int argc, char** argv) {
   app.add_option("--home", session.home, "folder with ontology, rules, queries, models and labels")
       ->check(CLI::ExistingDirectory);
   app.add_option("--threads", session.threads, "threads to use (0: all); the result does not depend on it")
-      ->check(CLI::Range(0, 1024));
+      ->check(wholeWithin({.min = 0, .max = 1024}));
   app.fallthrough();
   addCommands(app, session);
   try {

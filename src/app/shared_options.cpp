@@ -32,9 +32,9 @@ void addScanOptions(CLI::App& command, ScanOptions& options) {
   const std::map<std::string, UpAxis> axes{{"z", UpAxis::Z}, {"y", UpAxis::Y}};
   command.add_option("--poses", options.poses, "poses of the scans: KITTI 3x4, TUM, or 4x4 text");
   command.add_option("--units", options.frame.unit, "unit of the scans and poses: m (default), cm, mm, ft or us-ft")
-      ->transform(CLI::CheckedTransformer(units).description("UNIT"));
+      ->transform(wordFor(units, "UNIT"));
   command.add_option("--up", options.frame.up, "axis of the scans and poses that points up: z (default) or y")
-      ->transform(CLI::CheckedTransformer(axes).description("AXIS"));
+      ->transform(wordFor(axes, "AXIS"));
 }
 
 void BudgetOptions::applyTo(sparql::QueryBudget& budget) const {
@@ -49,7 +49,7 @@ void addBudget(CLI::App& command, BudgetOptions& options) {
   command.add_option("--deadline", options.deadline_s, "seconds after which the command fails with exit code 6")
       ->check(above0());
   command.add_option("--max-memory", options.max_memory_mib, "MiB above which the command fails with exit code 6")
-      ->check(above0());
+      ->check(wholeAbove0());
 }
 
 void addAuthor(CLI::App& command, std::string& author) {

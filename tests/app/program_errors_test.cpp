@@ -223,6 +223,9 @@ TEST_F(Program, WrongChoicesOfOneCommandAreErrorsOfUsage) {
                   campus() + " --helper " + campus() + " --helper-truth campus --helper-truth campus"),
               2, "one for each");
   expectError(run("simulate " + campus()), 2, "campus");
+  for (const char* place : {"nan,0", "0,inf"})
+    expectError(run("route " + map() + " " + place + " 5,5"), 2, "write a place as X,Y in metres");
+  expectError(run("changes " + map() + " --since nan"), 2, "'nan' is no time");
 }
 
 TEST_F(Program, ErrorsOfTheLibraryAreShownWithTheOptionThatHelps) {

@@ -341,7 +341,7 @@ TEST(TimeNamed, ReadsDatesAndSeconds) {
   EXPECT_DOUBLE_EQ(timeNamed("2023-11-14T22:13:20Z"), 1.7e9);
   EXPECT_DOUBLE_EQ(timeNamed("1700000000.5"), 1700000000.5);
   EXPECT_DOUBLE_EQ(timeNamed("1970-01-02"), 86400);
-  EXPECT_THROW(timeNamed("yesterday"), Error);
+  for (const char* text : {"yesterday", "nan", "inf"}) EXPECT_THROW(timeNamed(text), Error) << text;
 }
 
 }  // namespace

@@ -86,7 +86,7 @@ void addChangeOptions(CLI::App& command, mapping::ChangeParams& params, bool in_
   command.add_flag("--dry-run", params.dry_run, "tell what would change, and write nothing");
   if (in_batches)
     command.add_option("--batch-points", params.batch_points, "commit when a batch of scans has this many points")
-        ->check(above0());
+        ->check(wholeAbove0());
 }
 
 void printChange(const fs::path& map, const ChangeReport& report, const mapping::ChangeParams& params,

@@ -24,7 +24,7 @@ tasks::AnswerFormat formatIn(const AnswerOutput& output, const Session& session)
 /// Adds --format, --geojson and --local.
 void addAnswerOutput(CLI::App& command, AnswerOutput& output) {
   command.add_option("--format", output.format, "table, csv, json, geojson")
-      ->check(CLI::IsMember({"table", "csv", "json", "geojson"}));
+      ->check(oneOf(std::vector<std::string>{"table", "csv", "json", "geojson"}));
   command.add_flag("--geojson", output.geojson, "the same as --format geojson");
   command.add_flag("--local", output.local,
                    "write GeoJSON in metres of the map frame instead of longitude and latitude");

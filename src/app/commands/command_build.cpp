@@ -71,7 +71,7 @@ void addBuild(CLI::App& app, Session& session) {
   command->add_option("--ontology", options->files.ontology, "ontology files instead of ontology/*.ttl");
   command
       ->add_option("--batch-points", options->params.batch_points, "commit when a batch of scans has this many points")
-      ->check(above0());
+      ->check(wholeAbove0());
   command->add_option("--statements", options->statements,
                       "an RDF file of operator statements, as the command state exports them");
   CLI::Option* force =

@@ -148,7 +148,7 @@ void addQuery(CLI::App& app, Session& session) {
   command->add_option("--format", options->format, "table, json, xml, csv, tsv; for graphs turtle, ntriples");
   addBudget(*command, options->budget);
   command->add_option("--max-rows", options->max_rows, "rows above which the query fails with exit code 6")
-      ->check(above0());
+      ->check(wholeAbove0());
   command->add_flag("--explain", options->explain,
                     "print the plan with estimated and actual rows on stderr; with --json as JSON in one line");
   command->add_flag("--why-empty", options->why_empty,

@@ -143,12 +143,18 @@ void addRuleFit(CLI::App& rules, Session& session) {
   fitting->add_option("--keep", options->keep, "the id of a rule that stays as it is");
   fitting->add_option("--rules", options->rules, "the rule file; default: rules/outdoor.rules.yaml");
   fitting->add_option("-o,--out", options->out, "write the rule file with the new numbers here");
-  fitting->add_option("--min-examples", options->params.min_examples,
-                      "smallest number of right and of wrong candidates for fitting a rule (default 10)");
-  fitting->add_option("--interval", options->params.interval,
-                      "change a number when this share of the resamples excludes the old one (default 0.8)");
-  fitting->add_option("--ridge", options->params.ridge,
-                      "strength with which the ridge pulls log-odds towards 0 (default 4)");
+  fitting
+      ->add_option("--min-examples", options->params.min_examples,
+                   "smallest number of right and of wrong candidates for fitting a rule (default 10)")
+      ->check(wholeAbove0());
+  fitting
+      ->add_option("--interval", options->params.interval,
+                   "change a number when this share of the resamples excludes the old one (default 0.8)")
+      ->check(share());
+  fitting
+      ->add_option("--ridge", options->params.ridge,
+                   "strength with which the ridge pulls log-odds towards 0 (default 4)")
+      ->check(above0());
   fitting->add_option("--ontology", options->inputs.ontology, "ontology files instead of ontology/*.ttl");
   onRun(*fitting, session, [options, &session] { return fit(*options, session); });
 }

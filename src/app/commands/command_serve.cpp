@@ -169,32 +169,33 @@ void addServe(CLI::App& app, Session& session) {
       ->add_option("--host", options->host,
                    "the address to listen on; any other than 127.0.0.1 can be reached from other machines")
       ->check(named());
-  command->add_option("--port", options->port, "the port to listen on; 0: a free one")->check(CLI::Range(0, 65535));
+  command->add_option("--port", options->port, "the port to listen on; 0: a free one")
+      ->check(wholeWithin({.min = 0, .max = 65535}));
   command->add_option("--token-file", options->token_file,
                       "a file with the token that permits updates; without it updates are refused");
   command->add_option("--cors", options->origins, "an origin whose web pages may read answers; *: all origins");
   command->add_option("--log", options->log, "a file to append the access log to, instead of stderr");
   command->add_flag("--quiet", options->quiet, "write no access log");
   command->add_option("--deadline", options->deadline_s, "seconds after which a query is given up")
-      ->check(CLI::Range(0.001, 1e9));
-  command->add_option("--max-rows", options->max_rows, "rows above which a query is given up")->check(above0());
+      ->check(within({.min = 0.001, .max = 1e9}));
+  command->add_option("--max-rows", options->max_rows, "rows above which a query is given up")->check(wholeAbove0());
   command->add_option("--max-memory", options->max_memory_mib, "MiB above which a query is given up")
-      ->check(CLI::Range(1, 1 << 24));
+      ->check(wholeWithin({.min = 1, .max = 1 << 24}));
   command
       ->add_option("--page-points", options->page_points,
                    "points of a map's page; those that it leaves out come when the camera is near")
-      ->check(above0());
+      ->check(wholeAbove0());
   command->add_option("--max-answer", options->max_answer_mib, "MiB above which an answer is given up")
-      ->check(CLI::Range(1, 1 << 24));
+      ->check(wholeWithin({.min = 1, .max = 1 << 24}));
   command->add_option("--max-request", options->max_request_kib, "KiB above which the body of a request is refused")
-      ->check(CLI::Range(1, 1 << 24));
+      ->check(wholeWithin({.min = 1, .max = 1 << 24}));
   command->add_option("--rate", options->rate, "requests per second of one client; more are refused")->check(above0());
   command->add_option("--running", options->running, "requests that are computed at the same time; default: --threads")
-      ->check(CLI::Range(1, 1024));
+      ->check(wholeWithin({.min = 1, .max = 1024}));
   command->add_option("--queue", options->queue, "requests that wait in the queue; more are refused")
-      ->check(CLI::Range(0, 1 << 16));
+      ->check(wholeWithin({.min = 0, .max = 1 << 16}));
   command->add_option("--connections", options->connections, "open connections; more are refused")
-      ->check(CLI::Range(1, 900));
+      ->check(wholeWithin({.min = 1, .max = 900}));
   onRun(*command, session, [options, &session] { return serveMaps(*options, session); });
 }
 

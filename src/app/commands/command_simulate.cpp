@@ -94,13 +94,13 @@ void addSimulate(CLI::App& app, Session& session) {
   for (const simulation::CampusParamInfo& info : simulation::campusParamInfos()) {
     const std::string help = std::string(info.help) + " [" + std::string(info.unit) + "]";
     command->add_option("--" + std::string(info.name), options->params.*info.field, help)
-        ->check(CLI::Range(info.min, info.max))
+        ->check(within({.min = info.min, .max = info.max}))
         ->capture_default_str();
   }
   const std::map<std::string, simulation::LaserKind> lasers{{"pan-tilt", simulation::LaserKind::PanTilt},
                                                             {"spinning", simulation::LaserKind::Spinning}};
   command->add_option("--laser", options->params.laser, "pan-tilt, or spinning (64 rings, as on a vehicle)")
-      ->transform(CLI::CheckedTransformer(lasers));
+      ->transform(wordFor(lasers, "LASER"));
   CLI::Option* city =
       command->add_option("--city", options->city, "a grid of such campuses, made one after the other: COLUMNSxROWS");
   command->add_option("--districts", options->districts, "write only these campuses of the city: FIRST..LAST, from 0")

@@ -6,7 +6,6 @@
 #include "app/commands/statement_list.hpp"
 #include "app/shared_options.hpp"
 #include "base/file_bytes.hpp"
-#include "base/utf8.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/build/operator_statements.hpp"
 #include "mapping/change/statement_change.hpp"
@@ -62,16 +61,6 @@ std::vector<Eigen::Vector2d> cornersOf(const std::vector<double>& numbers) {
   std::vector<Eigen::Vector2d> corners;
   for (std::size_t i = 0; i < numbers.size(); i += 2) corners.emplace_back(numbers[i], numbers[i + 1]);
   return corners;
-}
-
-/// Texts that go into the map.
-CLI::Validator validText() {
-  return CLI::Validator(
-      [](const std::string& text) {
-        if (text.empty()) return std::string("the text is empty");
-        return firstInvalidUtf8(text) ? std::string("the text is not UTF-8") : std::string();
-      },
-      "");
 }
 
 /// The ground of a map is one object: what is said of its class would hold for all of it.
@@ -201,7 +190,8 @@ void addState(CLI::App& app, Session& session) {
   command
       ->add_option("--ignore-region", options->region,
                    "X0,Y0,X1,Y1 or a polygon X,Y,X,Y,X,Y… [m, map]: state that nothing in it is an object")
-      ->delimiter(',');
+      ->delimiter(',')
+      ->check(finite());
   command->add_option("--withdraw", options->withdrawn, "take back a statement: the first digits of its id");
   addAuthor(*command, options->author);
   command->add_flag("--list", options->list, "list the statements, and whether each was applied");

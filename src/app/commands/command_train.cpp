@@ -86,7 +86,7 @@ void addTrain(CLI::App& app, Session& session) {
   command->add_option("--name", options->name, "the model's name; default: that of the folder");
   command->add_option("--data", options->data, "description of the data, for the model's card");
   command->add_option("--group-size", options->group_size, "consecutive places left out together in cross-validation")
-      ->check(above0())
+      ->check(wholeWithin({.min = 1, .max = 1'000'000}))
       ->capture_default_str();
   command->add_flag("--no-copies", options->no_copies, "do not train on copies that imitate other sensors");
   onRun(*command, session, [options, &session] { return trainModel(*options, session); });

@@ -76,11 +76,11 @@ void addView(CLI::App& app, Session& session) {
   command
       ->add_option("--max-points", options->max_points,
                    "largest number of points to show; a larger map is sampled evenly")
-      ->check(above0());
+      ->check(wholeAbove0());
   command
       ->add_option("--max-quads", options->max_quads,
                    "largest number of quads; above it, quads about primitives are left out")
-      ->check(above0());
+      ->check(wholeAbove0());
   command->add_flag("--without-reasons", options->without_reasons, "leave out the explanations of objects");
   addAllowUnfinished(*command, options->allow_unfinished);
   onRun(*command, session, [options, &session] { return view(*options, session); });

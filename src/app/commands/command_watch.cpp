@@ -67,9 +67,9 @@ void addWatch(CLI::App& app, Session& session) {
       ->check(named());
   addScanOptions(*command, options->scans);
   command->add_option("--interval", options->params.interval_s, "time between two looks at the folder [s, 1]")
-      ->check(CLI::Range(0.05, 3600.0));
+      ->check(within({.min = 0.05, .max = 3600}));
   command->add_option("--idle", options->params.idle_s, "end when no scan has arrived for this time [s]; 0: never")
-      ->check(CLI::Range(0.0, 1e6));
+      ->check(within({.min = 0, .max = 1e6}));
   command->add_option("--model", options->files.model,
                       "for a new map: a trained model, as a name in models/ or a file");
   command->add_option("--rules", options->files.rules, "for a new map: rule files instead of rules/outdoor.rules.yaml");

@@ -118,14 +118,14 @@ void addWayOptions(CLI::App& command, WayArguments& arguments) {
   command.add_option("--without", request.without, "a class, Movable or Static: leave these objects out");
   command.add_flag("--with-gone", request.with_gone, "keep objects that later scans show to be gone");
   command.add_option("--max-slope", request.params.max_slope, "largest slope, rise over run [0.12]")
-      ->check(CLI::Range(0.0, 10.0));
+      ->check(within({.min = 0, .max = 10}));
   command.add_option("--max-step", request.params.max_step_m, "height of a kerb that can be crossed [m, 0.06]")
-      ->check(CLI::Range(0.0, 2.0));
+      ->check(within({.min = 0, .max = 2}));
   command
       .add_option("--height", request.terrain.highest_m, "clearance: objects that hang higher are no obstacles [m, 2]")
-      ->check(CLI::Range(0.3, 20.0));
+      ->check(within({.min = 0.3, .max = 20}));
   command.add_option("--cell", request.terrain.cell_m, "edge length of a grid cell [m, 0.25]")
-      ->check(CLI::IsMember({0.125, 0.25, 0.5, 1.0}));
+      ->check(oneOf(std::vector<double>{0.125, 0.25, 0.5, 1}));
   addAllowUnfinished(command, arguments.allow_unfinished);
 }
 
@@ -133,7 +133,7 @@ void addWalkOptions(CLI::App& command, WayArguments& arguments) {
   command.add_option("map", arguments.map, "a map")->required();
   command.add_option("from", arguments.from, "X,Y in metres of the map frame, or an object")->required();
   command.add_option("--width", arguments.request.params.width_m, "free width that is needed [m, 0.6]")
-      ->check(CLI::Range(0.0, 20.0));
+      ->check(within({.min = 0, .max = 20}));
 }
 
 ExitCode learnPlaces(const std::vector<fs::path>& maps, const fs::path& output, Session& session) {
@@ -187,15 +187,16 @@ void addSearch(CLI::App& app, Session& session) {
                     "the walk may cross ground that was not observed");
   command->add_option("--from", request->from, "start: X,Y or an object; default: where the last scan was taken");
   command->add_option("--budget", request->tour.budget_m, "largest length of the walk [m]")->check(above0());
-  command->add_option("--stops", request->tour.max_stops, "largest number of stops [10]")->check(CLI::Range(1, 100));
+  command->add_option("--stops", request->tour.max_stops, "largest number of stops [10]")
+      ->check(wholeWithin({.min = 1, .max = 100}));
   command->add_option("--view", request->search.view_m, "distance within which an object is recognised [m, 10]")
-      ->check(CLI::Range(1.0, 100.0));
+      ->check(within({.min = 1, .max = 100}));
   command
       ->add_option("--detection", request->search.detection,
                    "share of the objects of the class in view of a scan that the map holds [0.8]")
       ->check(share());
   command->add_option("--width", options->request.params.width_m, "free width that is needed [m, 0.6]")
-      ->check(CLI::Range(0.0, 20.0));
+      ->check(within({.min = 0, .max = 20}));
   addWayOptions(*command, *options);
   onRun(*command, session, [options, request, learn, &session] {
     if (learn->parsed()) return session.exit_code;
@@ -215,8 +216,8 @@ void addWays(CLI::App& app, Session& session) {
   addWayOptions(*route_command, *options);
   route_command->add_option("--near", options->request.near, "a class: prefer routes near objects of this class");
   route_command->add_option("--alternatives", options->alternatives, "number of routes to look for [1]")
-      ->check(CLI::Range(1, 9));
-  route_command->add_option("--format", options->format, "geojson")->check(CLI::IsMember({"geojson"}));
+      ->check(wholeWithin({.min = 1, .max = 9}));
+  route_command->add_option("--format", options->format, "geojson")->check(oneOf(std::vector<std::string>{"geojson"}));
   route_command->add_flag("--local", options->local,
                           "write GeoJSON in metres of the map frame instead of longitude and latitude");
   onRun(*route_command, session, [options, &session] { return route(*options, session); });

@@ -2,8 +2,6 @@
 // stdout is data, stderr is progress and notes.
 #include <unistd.h>
 
-#include <charconv>
-#include <cstdint>
 #include <cstdio>
 #include <thread>
 
@@ -46,39 +44,6 @@ unsigned Session::threadCount() const {
 void onRun(CLI::App& command, Session& session, std::function<ExitCode()> run) {
   command.add_flag("--json", session.json, "print JSON");
   command.callback([&session, run = std::move(run)] { session.exit_code = run(); });
-}
-
-CLI::Validator above0() {
-  const auto fault = [](std::string& text) {
-    double value = 0;
-    const bool is_number = CLI::detail::lexical_cast(text, value);
-    return is_number && value > 0 ? std::string() : "write a number above 0, not " + text;
-  };
-  return {fault, "ABOVE 0", "above0"};
-}
-
-CLI::Validator share() {
-  const auto fault = [](std::string& text) {
-    double value = -1;
-    const bool is_number = CLI::detail::lexical_cast(text, value);
-    return is_number && value >= 0 && value <= 1 ? std::string() : "write a number from 0 to 1, not " + text;
-  };
-  return {fault, "0 TO 1", "share"};
-}
-
-CLI::Validator whole() {
-  const auto fault = [](std::string& text) {
-    std::uint64_t value = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    const bool is_read = error == std::errc() && end == text.data() + text.size();
-    return is_read ? std::string() : "write a whole number from 0 to 18446744073709551615, not " + text;
-  };
-  return {fault, "WHOLE", "whole"};
-}
-
-CLI::Validator named() {
-  const auto fault = [](std::string& text) { return text.empty() ? std::string("the name is empty") : std::string(); };
-  return {fault, "NAME", "named"};
 }
 
 void print(std::string_view text) {

@@ -3,7 +3,6 @@
 #include "app/console/usage_fault.hpp"
 
 #include <algorithm>
-#include <vector>
 
 #include "base/nearest_name.hpp"
 #include "tasks/ask/task_table.hpp"
@@ -46,12 +45,6 @@ Names optionsOf(const CLI::App& app) {
   return names;
 }
 
-std::string listed(const Names& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text;
-}
-
 std::string didYouMean(const std::string& name, const Names& known) {
   const auto nearest = nearestName(name, known);
   return nearest ? "; did you mean '" + *nearest + "'?" : "";
@@ -84,13 +77,20 @@ std::string unexpected(const std::string& argument, const Reached& reached) {
 
 }  // namespace
 
+std::string listed(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+  return text;
+}
+
 std::string usageMessage(const CLI::App& app, const CLI::ParseError& fault) {
   const Reached reached = reachedIn(app);
   const Names extras = app.remaining(true);
   std::string what = withoutRepetition(fault.what());
+  const bool is_incomplete = dynamic_cast<const CLI::RequiredError*>(&fault) != nullptr;
   if (!extras.empty())
     what = unexpected(extras.front(), reached);
-  else if (const Names commands = commandsOf(*reached.command); !commands.empty())
+  else if (const Names commands = commandsOf(*reached.command); is_incomplete && !commands.empty())
     what = "a command is missing: " + listed(commands);
   const std::string help = "cluxel " + reached.name + (reached.name.empty() ? "" : " ") + "--help";
   return reached.prefix() + what + "\n  hint: '" + help + "' shows what it takes";

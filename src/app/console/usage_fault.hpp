@@ -4,10 +4,14 @@
 
 #include <CLI/CLI.hpp>
 #include <string>
+#include <vector>
 
 namespace cluxel::app {
 
 /// For a command line that `app` refused with `fault`.
 std::string usageMessage(const CLI::App& app, const CLI::ParseError& fault);
+
+/// The words with commas between them.
+std::string listed(const std::vector<std::string>& words);
 
 }  // namespace cluxel::app

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <tuple>
@@ -187,7 +188,7 @@ std::vector<PartStates> statesOfParts(const SiteChanges& changes) {
 double timeNamed(const std::string& text) {
   double seconds = 0;
   const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), seconds);
-  if (fault == std::errc() && end == text.data() + text.size()) return seconds;
+  if (fault == std::errc() && end == text.data() + text.size() && std::isfinite(seconds)) return seconds;
   auto time = sparql::parseCalendar(sparql::CalendarKind::DateTime, text);
   if (!time) time = sparql::parseCalendar(sparql::CalendarKind::Date, text);
   if (!time)

@@ -2,6 +2,7 @@
 // What names mean in a request for ways: classes, mobilities, places.
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 
 #include "base/ascii.hpp"
 #include "base/nearest_name.hpp"
@@ -51,10 +52,10 @@ void markGone(const mapping::MapReader& map, std::vector<bool>& marked) {
   }
 }
 
-std::optional<double> wholeNumber(std::string_view text) {
+std::optional<double> finiteNumber(std::string_view text) {
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  const bool is_read = !text.empty() && error == std::errc() && end == text.data() + text.size();
+  const bool is_read = error == std::errc() && end == text.data() + text.size() && std::isfinite(value);
   return is_read ? std::optional(value) : std::nullopt;
 }
 
@@ -130,8 +131,8 @@ Eigen::Vector2d placeNamed(const mapping::MapReader& map, const std::string& tex
   constexpr std::size_t min_digits = 4;
   const std::size_t comma = text.find(',');
   if (comma != std::string::npos) {
-    const auto x = wholeNumber(std::string_view(text).substr(0, comma));
-    const auto y = wholeNumber(std::string_view(text).substr(comma + 1));
+    const auto x = finiteNumber(std::string_view(text).substr(0, comma));
+    const auto y = finiteNumber(std::string_view(text).substr(comma + 1));
     if (x && y) return {*x, *y};
     throw Error(ErrorKind::InvalidArgument, "'" + text + "': write a place as X,Y in metres of the map frame");
   }
