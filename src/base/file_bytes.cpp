@@ -108,6 +108,17 @@ bool isOpenedByShell(const fs::path& path) {
   return name == "/dev/stdin" || name.starts_with("/dev/fd/") || name.starts_with("/proc/self/fd/");
 }
 
+File opened(const fs::path& path) {
+  std::error_code ignored;
+  if (isSpecial(path) && !isOpenedByShell(path))
+    throw InputError({.file = path.string()}, "is a pipe or a device, a file was expected",
+                     "write its data to a file first");
+  if (fs::is_directory(path, ignored)) throw InputError({.file = path.string()}, "is a folder, a file was expected");
+  File file(std::fopen(path.c_str(), "rb"), &std::fclose);
+  if (!file) refuse(path, "cannot be opened");
+  return file;
+}
+
 }  // namespace
 
 fs::path withoutLinks(fs::path path) {
@@ -131,17 +142,20 @@ void syncFolderOf(const fs::path& file) {
 
 std::string readFile(const fs::path& path) {
   std::error_code ignored;
-  if (isSpecial(path) && !isOpenedByShell(path))
-    throw InputError({.file = path.string()}, "is a pipe or a device, a file was expected",
-                     "write its data to a file first");
-  if (fs::is_directory(path, ignored)) throw InputError({.file = path.string()}, "is a folder, a file was expected");
-  const File file(std::fopen(path.c_str(), "rb"), &std::fclose);
-  if (!file) refuse(path, "cannot be opened");
+  const File file = opened(path);
   std::string bytes;
   const auto size = fs::file_size(path, ignored);
   if (!ignored) bytes.reserve(size);
   char buffer[1 << 16];
   while (const std::size_t count = std::fread(buffer, 1, sizeof buffer, file.get())) bytes.append(buffer, count);
+  if (std::ferror(file.get())) refuse(path, "cannot be read");
+  return bytes;
+}
+
+std::string readBeginning(const fs::path& path, std::size_t count) {
+  const File file = opened(path);
+  std::string bytes(count, '\0');
+  bytes.resize(std::fread(bytes.data(), 1, count, file.get()));
   if (std::ferror(file.get())) refuse(path, "cannot be read");
   return bytes;
 }

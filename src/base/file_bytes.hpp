@@ -2,6 +2,7 @@
 // Whole files in and out of memory; a file is written beside its place and moved there when it is whole.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -11,6 +12,9 @@ namespace cluxel {
 
 /// The bytes of a file, or of /dev/stdin and /dev/fd/N; InputError when it cannot be read, or is no regular file.
 std::string readFile(const std::filesystem::path& path);
+
+/// At most the first `count` bytes of a file; InputError when it cannot be read.
+std::string readBeginning(const std::filesystem::path& path, std::size_t count);
 
 /// The entries of a folder whose names end in one of `endings`, sorted.
 std::vector<std::filesystem::path> filesIn(const std::filesystem::path& folder,

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <fstream>
 
 #include "base/ascii.hpp"
 #include "base/file_bytes.hpp"
@@ -63,17 +62,9 @@ std::optional<fs::path> existing(const fs::path& path) {
   return std::nullopt;
 }
 
-std::string firstBytes(const fs::path& path, std::size_t count) {
-  std::ifstream stream(path, std::ios::binary);
-  std::string bytes(count, '\0');
-  stream.read(bytes.data(), static_cast<std::streamsize>(count));
-  bytes.resize(static_cast<std::size_t>(stream.gcount()));
-  return bytes;
-}
-
 ScanFormat textFormatOf(const fs::path& path) {
   constexpr std::size_t kSniffedBytes = 65536;
-  std::string head = firstBytes(path, kSniffedBytes);
+  std::string head = readBeginning(path, kSniffedBytes);
   if (head.size() == kSniffedBytes) head.resize(head.rfind('\n') + 1);
   const std::size_t columns = columnsOfFirstLine(head);
   if (columns == 5) return ScanFormat::LabelledText;

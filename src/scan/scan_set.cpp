@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
 #include <functional>
 #include <map>
 #include <utility>
@@ -14,6 +13,7 @@
 #include "scan/formats/las_crs.hpp"
 #include "scan/formats/manifest.hpp"
 #include "scan/formats/pcd_format.hpp"
+#include "scan/input_paths.hpp"
 #include "scan/scan_layouts.hpp"
 #include "scan/scan_loader.hpp"
 
@@ -23,30 +23,10 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Opening a named pipe waits for a writer, which may never come.
-void requireFileOrFolder(const fs::path& path) {
-  if (fs::is_regular_file(path) || fs::is_directory(path)) return;
-  throw InputError({.file = path.string()}, "is a pipe or a device, a file or a folder was expected",
-                   "write its data to a file first");
-}
-
-bool isManifest(const fs::path& path) {
-  return path.extension() == ".yaml" || path.extension() == ".yml";
-}
-
-std::optional<fs::path> manifestIn(const fs::path& folder) {
-  for (const char* name : {"manifest.yaml", "manifest.yml"})
-    if (fs::is_regular_file(folder / name)) return folder / name;
-  return std::nullopt;
-}
-
 /// The VIEWPOINT of a PCD file; its header must lie in the first 64 KiB.
 std::optional<Eigen::Isometry3d> viewpointOf(const fs::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  std::string head(65536, '\0');
-  stream.read(head.data(), static_cast<std::streamsize>(head.size()));
-  head.resize(static_cast<std::size_t>(stream.gcount()));
-  return pcdViewpoint(head, path.string());
+  constexpr std::size_t kHeaderBytes = 65536;
+  return pcdViewpoint(readBeginning(path, kHeaderBytes), path.string());
 }
 
 /// Collects scans, poses and the map frame from the inputs, one after the other.
@@ -55,8 +35,7 @@ class ScanGatherer {
   ScanGatherer(const ScanSetParams& params, ProgressSink& sink) : params_(&params), sink_(&sink) {}
 
   void add(const fs::path& input) {
-    if (!fs::exists(input)) throw InputError({.file = input.string()}, "there is no such file or folder");
-    requireFileOrFolder(input);
+    requireInput(input);
     if (fs::is_directory(input))
       addFolder(input);
     else if (isManifest(input))
@@ -180,14 +159,24 @@ class ScanGatherer {
 
   void addScansOf(const fs::path& path) {
     const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
-    const Manifest manifest = parseManifest(readFile(path), path.string(), folder);
+    const Manifest manifest = readManifest(path, folder);
     adoptFrame(manifest, path);
     const std::size_t first = scans_.size();
-    for (const ManifestEntry& entry : manifest.scans) addEntry(entry, path);
-    if (manifest.poses) assignPosesFrom(*manifest.poses, first);
+    for (const ManifestEntry& entry : manifest.scans) addEntry(entry);
+    if (manifest.poses) assignPosesFrom(manifest.poses->path, first);
     if (!manifest.poses_in_outer || !manifest.map_origin) return;
     for (std::size_t i = first; i < scans_.size(); ++i)
       scans_[i].file.T_map_sensor.pretranslate(Eigen::Vector3d(-*manifest.map_origin));
+  }
+
+  /// With all faults of its text and of the paths in it.
+  static Manifest readManifest(const fs::path& path, const fs::path& folder) {
+    const std::string text = readFile(path);
+    FaultList faults(path.string(), text);
+    Manifest manifest = parseManifest(text, path.string(), folder, faults);
+    checkPaths(manifest, faults);
+    faults.throwIfErrors();
+    return manifest;
   }
 
   void adoptFrame(const Manifest& manifest, const fs::path& path) {
@@ -200,24 +189,14 @@ class ScanGatherer {
     if (!manifest.crs.empty()) crs_ = manifest.crs;
   }
 
-  void addEntry(const ManifestEntry& entry, const fs::path& manifest) {
-    if (!fs::exists(entry.path))
-      throw InputError({.file = entry.path.string()},
-                       "there is no such file or folder; " + manifest.string() + " lists it");
-    requireFileOrFolder(entry.path);
-    if (fs::is_directory(entry.path)) {
-      if (entry.pose || entry.time_s || entry.labels || entry.format)
-        throw InputError({.file = manifest.string()},
-                         entry.path.string() + " is a folder: only a file takes pose, time_s, labels or format");
-      return addFolder(entry.path);
-    }
-    if (isManifest(entry.path))
-      throw InputError({.file = manifest.string()}, "a manifest cannot list the manifest " + entry.path.string());
-    LayoutScan scan = entry.pose || entry.format ? plainScan(entry.path, entry.format) : singleScan(entry.path);
+  void addEntry(const ManifestEntry& entry) {
+    const fs::path& path = entry.path.path;
+    if (fs::is_directory(path)) return addFolder(path);
+    LayoutScan scan = entry.pose || entry.format ? plainScan(path, entry.format) : singleScan(path);
     if (entry.pose) scan.file.T_map_sensor = *entry.pose;
     if (entry.pose) scan.file.has_pose = true;
     if (entry.time_s) scan.file.time_s = entry.time_s;
-    if (entry.labels) scan.file.labels = entry.labels;
+    if (entry.labels) scan.file.labels = entry.labels->path;
     scans_.push_back(std::move(scan));
   }
 

@@ -28,11 +28,11 @@ TEST(Manifest, ReadsEveryFormOfAPose) {
   ASSERT_EQ(manifest.scans.size(), 5U);
   EXPECT_EQ(manifest.map_origin, Eigen::Vector3d(456000, 5412000, 0));
   EXPECT_EQ(manifest.crs, "EPSG:25832");
-  EXPECT_EQ(manifest.scans[0].path, "/data/a.pcd");
+  EXPECT_EQ(manifest.scans[0].path.path, "/data/a.pcd");
   EXPECT_FALSE(manifest.scans[0].pose.has_value());
   EXPECT_EQ(manifest.scans[1].time_s, 12.5);
-  EXPECT_EQ(manifest.scans[2].path, "/c.txt");
-  EXPECT_EQ(manifest.scans[2].labels, "/data/c.label");
+  EXPECT_EQ(manifest.scans[2].path.path, "/c.txt");
+  EXPECT_EQ(manifest.scans[2].labels->path, "/data/c.label");
   EXPECT_EQ(manifest.scans[2].format, ScanFormat::Xyz);
   for (std::size_t i = 2; i < 5; ++i) EXPECT_TRUE(manifest.scans[i].pose->isApprox(*manifest.scans[1].pose, 1e-9)) << i;
 }
@@ -102,12 +102,28 @@ TEST(Manifest, OfAFolderSpeaksForTheFolder) {
   EXPECT_EQ(set.file(0).T_map_sensor.translation().x(), 3);
 }
 
-TEST(Manifest, NamesScansThatAreNotThere) {
+TEST(Manifest, ReportsWhatIsNotThereAtItsPlaceAndWithAllOtherFaults) {
   const ScratchFolder folder;
-  const auto manifest = folder.write("m.yaml", "scans: [gone.pcd]\n");
+  folder.write("inner/a.xyz", "1 2 3\n");
+  folder.write("b.yaml", "scans: [inner/a.xyz]\n");
+  const auto manifest = folder.write("m.yaml",
+                                     "poses: gone.tum\nscans:\n  - gone.pcd\n  - {path: gone_too.pcd}\n"
+                                     "  - {path: inner/a.xyz, labels: gone.label}\n  - {path: inner, time_s: 3}\n"
+                                     "  - b.yaml\n  - {path: inner/a.xyz, tme_s: 3}\n");
   ProgressSink silent;
-  EXPECT_THAT(refusalOf([&] { ScanSet::open({manifest}, {}, silent); }),
-              AllOf(HasSubstr("gone.pcd: error: there is no such file"), HasSubstr("m.yaml lists it")));
+  const std::string text = refusalOf([&] { ScanSet::open({manifest}, {}, silent); });
+  const auto hasFault = [&](const std::string& place, const std::string& what) {
+    EXPECT_THAT(text, HasSubstr("m.yaml:" + place + ": error: " + what));
+  };
+  const std::string inside = folder.path().string() + "/";
+  hasFault("1:8", inside + "gone.tum: there is no such file or folder\n  poses: gone.tum\n         ^");
+  hasFault("3:5", inside + "gone.pcd: there is no such file or folder");
+  hasFault("4:12", inside + "gone_too.pcd: there is no such file or folder");
+  hasFault("5:33", inside + "gone.label: there is no such file or folder");
+  hasFault("6:12", inside + "inner is a folder: only a file takes pose, time_s, labels or format");
+  hasFault("7:5", "a manifest cannot list the manifest " + inside + "b.yaml");
+  hasFault("8:25", "unknown key 'tme_s'");
+  EXPECT_THAT(text, HasSubstr("7 errors, 0 warnings"));
 }
 
 }  // namespace

@@ -42,12 +42,12 @@ class ManifestReader {
     return frame.text == "outer";
   }
 
-  std::optional<fs::path> pathAt(const YamlNode& mapping, const char* key) {
+  std::optional<ManifestPath> pathAt(const YamlNode& mapping, const char* key) {
     const YamlNode* value = mapping.find(key);
     if (!value) return std::nullopt;
     const auto text = textOf(*value, key, *faults_);
     if (!text) return std::nullopt;
-    return *folder_ / *text;
+    return ManifestPath{*folder_ / *text, value->at};
   }
 
   void readScans(const YamlNode& root, Manifest& manifest) {
@@ -62,7 +62,7 @@ class ManifestReader {
   ManifestEntry readScan(const YamlNode& value, const Manifest& manifest) {
     ManifestEntry entry;
     if (value.isScalar()) {
-      entry.path = *folder_ / value.text;
+      entry.path = {*folder_ / value.text, value.at};
       return entry;
     }
     if (!checkMapping(value, kScanKeys, *faults_)) return entry;
@@ -153,10 +153,14 @@ class ManifestReader {
 
 }  // namespace
 
+Manifest parseManifest(std::string_view text, const std::string& file, const fs::path& folder, FaultList& faults) {
+  const auto root = parseYaml(file, text, faults);
+  return root ? ManifestReader(faults, folder).read(*root) : Manifest();
+}
+
 Manifest parseManifest(std::string_view text, const std::string& file, const fs::path& folder) {
   FaultList faults(file, std::string(text));
-  Manifest manifest;
-  if (const auto root = parseYaml(file, text, faults)) manifest = ManifestReader(faults, folder).read(*root);
+  Manifest manifest = parseManifest(text, file, folder, faults);
   faults.throwIfErrors();
   return manifest;
 }
