@@ -122,6 +122,8 @@ int main(int argc, char** argv) {
     return code;
   } catch (const Error& error) {
     return fail(exitCodeOf(error.kind()), messageOf(error).c_str());
+  } catch (const std::filesystem::filesystem_error& error) {
+    return fail(ExitCode::FaultyInput, messageOf(error).c_str());
   } catch (const std::bad_alloc&) {
     return fail(ExitCode::BudgetExceeded, "not enough memory");
   } catch (const std::exception& error) {

@@ -160,13 +160,21 @@ std::string readBeginning(const fs::path& path, std::size_t count) {
   return bytes;
 }
 
+bool mayBeThere(const fs::path& path) {
+  std::error_code ignored;
+  const fs::file_status status = fs::status(path, ignored);
+  return fs::exists(status) || !fs::status_known(status);
+}
+
 std::vector<fs::path> filesIn(const fs::path& folder, const std::vector<std::string_view>& endings) {
   std::vector<fs::path> files;
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    const std::string name = entry.path().filename().string();
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
     if (std::any_of(endings.begin(), endings.end(), [&](std::string_view ending) { return name.ends_with(ending); }))
-      files.push_back(entry.path());
+      files.push_back(entry->path());
   }
+  if (error) throw InputError({.file = folder.string()}, "the folder cannot be read: " + error.message());
   std::sort(files.begin(), files.end());
   return files;
 }

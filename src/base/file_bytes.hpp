@@ -16,7 +16,10 @@ std::string readFile(const std::filesystem::path& path);
 /// At most the first `count` bytes of a file; InputError when it cannot be read.
 std::string readBeginning(const std::filesystem::path& path, std::size_t count);
 
-/// The entries of a folder whose names end in one of `endings`, sorted.
+/// Whether something is there, or may be: of what may not be looked at, opening it tells why.
+bool mayBeThere(const std::filesystem::path& path);
+
+/// The entries of a folder whose names end in one of `endings`, sorted; InputError when it cannot be read.
 std::vector<std::filesystem::path> filesIn(const std::filesystem::path& folder,
                                            const std::vector<std::string_view>& endings);
 

@@ -170,6 +170,35 @@ TEST_F(Program, AnEmptyFileIsNoMapInEveryCommandThatNeedsOne) {
   }
 }
 
+/// A name that is too long is one of many reasons for which the system does not let the program look at a file.
+TEST_F(Program, WhatTheSystemRefusesToLookAtIsToldLikeWhatIsNotThere) {
+  const std::string refused = path(std::string(300, 'x')).string(), fresh = path("of_refused.clx").string();
+  const std::string map = path("map.clx").string(), campus = path("campus").string();
+  const std::vector<std::pair<std::string, int>> cases{{"info " + refused, 4},
+                                                       {"build " + refused + " -o " + fresh, 4},
+                                                       {"build " + campus + " -o " + refused, 5},
+                                                       {"extend " + refused + " " + campus, 5},
+                                                       {"extend " + map + " " + refused, 4},
+                                                       {"retract " + refused + " 0000", 5},
+                                                       {"watch " + campus + " --idle 0.1 -o " + refused, 5},
+                                                       {"compact " + refused, 5},
+                                                       {"compact " + map + " -o " + refused, 5},
+                                                       {"doctor " + refused, 5},
+                                                       {"query " + refused + " objects", 5},
+                                                       {"evaluate " + map + " --truth " + refused, 4},
+                                                       {"rules check " + refused, 4},
+                                                       {"rules fit " + refused + " --truth campus", 5},
+                                                       {"simulate " + refused, 5},
+                                                       {"register " + campus + " -o " + refused + ".yaml", 5},
+                                                       {"export " + map + " -o " + refused + ".ply", 5}};
+  for (const auto& [arguments, code] : cases) {
+    SCOPED_TRACE(arguments);
+    const Outcome outcome = run(arguments);
+    expectError(outcome, code, "xxx");
+    EXPECT_EQ(outcome.err.find("filesystem error"), std::string::npos) << outcome.err;
+  }
+}
+
 TEST_F(Program, AnEmptyFileIsFilledByWhatMakesMapsAndStores) {
   const std::string store = path("filled_store.clx").string(), map = path("filled.clx").string();
   for (const std::string& file : {store, map}) writeFile(file, "");

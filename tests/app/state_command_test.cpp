@@ -78,7 +78,7 @@ TEST_F(StateCommand, RefusesWhatCannotBeMeant) {
   expectError(state(tree + " --label \"\""), 2, "the text is empty");
   expectError(state(tree + " --note \"\xff\""), 2, "the text is not UTF-8");
   expectError(state("--ignore-region 0,0,1,1,2,2"), 2, "has no area");
-  expectError(state("--ignore-region nan,0,1,1"), 2, "corner of the region");
+  expectError(state("--ignore-region nan,0,1,1"), 2, "--ignore-region: write a number that is finite, not nan");
   EXPECT_EQ(listed(), 0u);
 }
 

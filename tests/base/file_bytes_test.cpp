@@ -110,6 +110,23 @@ TEST_F(FileBytes, AreWrittenIntoAPipeThatIsThere) {
   EXPECT_EQ(filesThere(), 1U);
 }
 
+/// A name that is too long, as a folder that may not be entered, does not let us see what is there.
+TEST_F(FileBytes, OfWhatCannotBeLookedAtMayBeThere) {
+  const fs::path refused = folder_ / std::string(300, 'x');
+  EXPECT_TRUE(mayBeThere(refused));
+  EXPECT_FALSE(mayBeThere(folder_ / "absent"));
+  EXPECT_TRUE(mayBeThere(folder_));
+  for (const fs::path& folder : {refused, folder_ / "absent"}) EXPECT_THROW(filesIn(folder, {".x"}), InputError);
+}
+
+TEST_F(FileBytes, BeginAsTheWholeFileDoes) {
+  writeFile(folder_ / "a", "0123456789");
+  EXPECT_EQ(readBeginning(folder_ / "a", 4), "0123");
+  EXPECT_EQ(readBeginning(folder_ / "a", 40), "0123456789");
+  EXPECT_THROW(readBeginning(folder_ / "absent", 4), InputError);
+  EXPECT_THROW(readBeginning(folder_, 4), InputError);
+}
+
 /// Opening a pipe that nobody writes to waits for ever.
 TEST_F(FileBytes, OfANamedPipeOrADeviceAreRefused) {
   const fs::path pipe = folder_ / "pipe";

@@ -32,7 +32,11 @@ void refuseWrongOutput(const RegisterOptions& options) {
   if (ending != ".yaml" && ending != ".yml")
     throw Error(ErrorKind::InvalidArgument,
                 options.output.string() + ": what register writes is a manifest: name it *.yaml");
-  if (fs::exists(options.output) && !options.force)
+  std::error_code fault;
+  const bool is_there = fs::exists(options.output, fault);
+  if (fault)
+    throw Error(ErrorKind::StoreUnavailable, options.output.string() + ": cannot be written: " + fault.message());
+  if (is_there && !options.force)
     throw Error(ErrorKind::StoreUnavailable,
                 options.output.string() + " exists already: name another file, or give --force to replace it");
 }

@@ -33,7 +33,8 @@ struct TruthMaps {
 };
 
 std::vector<fs::path> mapsIn(const fs::path& path) {
-  if (!fs::is_directory(path)) return {path};
+  std::error_code ignored;
+  if (!fs::is_directory(path, ignored)) return {path};
   const std::vector<fs::path> maps = filesIn(path, {".clx"});
   if (maps.empty()) throw Error(ErrorKind::InvalidArgument, path.string() + " holds no maps (*.clx)");
   return maps;

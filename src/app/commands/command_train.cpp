@@ -42,7 +42,8 @@ std::vector<perception::TrainingSource> sourcesOf(const TrainOptions& options, c
 }
 
 ExitCode trainModel(const TrainOptions& options, Session& session) {
-  if (fs::exists(options.output) && !fs::is_directory(options.output))
+  std::error_code ignored;
+  if (fs::exists(options.output, ignored) && !fs::is_directory(options.output, ignored))
     throw Error(ErrorKind::StoreUnavailable, options.output.string() + ": is a file; name a folder for the model");
   const std::vector<perception::TrainingSource> sources = sourcesOf(options, session.dataHome());
   perception::CopyParams copies;

@@ -15,11 +15,11 @@ struct UpkeepOptions {
 };
 
 ExitCode compact(const UpkeepOptions& options, const Session& session) {
-  if (!options.output.empty() && fs::exists(options.output))
+  std::error_code ignored;
+  if (!options.output.empty() && fs::exists(options.output, ignored))
     throw Error(ErrorKind::InvalidArgument,
                 options.output.string() + ": is there already; choose another name or remove it");
-  std::error_code no_such_file;
-  const auto before = fs::file_size(options.map, no_such_file);
+  const auto before = fs::file_size(options.map, ignored);
   if (options.output.empty())
     mapping::compactMap(options.map);
   else

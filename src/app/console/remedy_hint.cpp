@@ -47,4 +47,9 @@ std::string messageOf(const Error& error) {
   return hint.empty() ? error.what() : error.what() + ("\n  hint: " + hint);
 }
 
+std::string messageOf(const std::filesystem::filesystem_error& error) {
+  if (error.path1().empty()) return error.what();
+  return error.path1().string() + ": cannot be used: " + error.code().message();
+}
+
 }  // namespace cluxel::app

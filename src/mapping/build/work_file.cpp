@@ -29,10 +29,11 @@ struct Found {
 
 Found lookAt(const fs::path& file) {
   using enum Found::Kind;
-  if (!fs::exists(file)) return {};
-  if (fs::is_directory(file))
+  std::error_code ignored;
+  if (!mayBeThere(file)) return {};
+  if (fs::is_directory(file, ignored))
     throw Error(ErrorKind::StoreUnavailable, file.string() + ": is a folder, a map was expected");
-  if (fs::is_regular_file(file) && fs::file_size(file) == 0) return {Empty};
+  if (fs::is_regular_file(file, ignored) && fs::file_size(file) == 0) return {Empty};
   const rdf::ReadTransaction transaction = rdf::Environment::open(file, rdf::OpenMode::ReadOnly)->read();
   if (const auto state = storedState(transaction)) return {Build, state};
   return {holdsNothing(transaction) ? Empty : OtherStore};

@@ -11,6 +11,7 @@
 #include "mapping/build/scan_store.hpp"
 #include "mapping/build/work_file.hpp"
 #include "mapping/change/map_compaction.hpp"
+#include "scan/input_paths.hpp"
 
 namespace cluxel::mapping {
 
@@ -223,8 +224,10 @@ class Watch {
 
 std::size_t watchFolder(const fs::path& folder, const fs::path& map, const WatchParams& params,
                         const WatchCallbacks& callbacks, ProgressSink& sink) {
-  if (!fs::is_directory(folder))
+  std::error_code ignored;
+  if (!fs::is_directory(folder, ignored))
     throw Error(ErrorKind::InvalidArgument, folder.string() + " is no folder: name the folder in which scans arrive");
+  scan::requireInput(folder);
   return Watch(folder, map, params, callbacks, sink).run();
 }
 

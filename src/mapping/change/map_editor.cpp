@@ -45,7 +45,7 @@ constexpr std::size_t kLargeCommit = 200;
 constexpr const char* kRestToken = "rest of a map editor";
 
 std::shared_ptr<rdf::Environment> openAs(const fs::path& file, rdf::OpenMode mode) {
-  if (!fs::exists(file))
+  if (!mayBeThere(file))
     throw Error(ErrorKind::StoreUnavailable, file.string() + ": there is no such map; build it first");
   return rdf::Environment::open(file, mode);
 }
@@ -54,7 +54,7 @@ std::shared_ptr<rdf::Environment> openForChange(const fs::path& file) {
 }
 
 bool worksOnCopy(const fs::path& file, const ChangeParams& params) {
-  return params.dry_run && fs::exists(file) && !mayWriteMap(file);
+  return params.dry_run && mayBeThere(file) && !mayWriteMap(file);
 }
 
 bool reachTiles(const MapInputs& before, const MapInputs& after) {

@@ -175,7 +175,7 @@ MapCheck checkMap(const std::filesystem::path& file) {
   try {
     checkStructure(file);
   } catch (const Error& error) {
-    if (!std::filesystem::is_regular_file(file)) throw;
+    if (std::error_code ignored; !std::filesystem::is_regular_file(file, ignored)) throw;
     MapCheck broken;
     broken.faults.emplace_back(error.what());
     return broken;

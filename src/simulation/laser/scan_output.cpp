@@ -67,7 +67,7 @@ std::vector<Eigen::Isometry3d> driftedPoses(const Campus& campus) {
 void prepareScanFolder(const fs::path& folder) {
   std::error_code failure;
   if (folder.empty()) throw Error(ErrorKind::InvalidArgument, "the folder for the scans has no name");
-  if (fs::exists(folder) && !(fs::is_directory(folder) && fs::is_empty(folder)))
+  if (fs::exists(folder, failure) && !(fs::is_directory(folder, failure) && fs::is_empty(folder, failure)) && !failure)
     throw Error(ErrorKind::InvalidArgument,
                 folder.string() + " is not an empty folder: name a new one, or remove it first");
   fs::create_directories(folder / "truth", failure);

@@ -3,6 +3,7 @@
 #include "tasks/evaluation/truth_source.hpp"
 
 #include "cluxel/error.hpp"
+#include "scan/input_paths.hpp"
 
 namespace cluxel::tasks {
 
@@ -22,6 +23,7 @@ TruthSource TruthSource::open(const fs::path& given, const DataHome& home) {
     source.labels_ = scan::LabelMap::load(path);
     return source;
   }
+  scan::requireInput(path);
   source.folder_ = path;
   source.labels_ = scan::LabelMap::load(home.locate("labels", "truth_files.yaml"));
   source.ambiguous_ = scan::ambiguousInstances(path);
