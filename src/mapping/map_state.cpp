@@ -133,7 +133,7 @@ bool requireFinished(const std::filesystem::path& file, const rdf::ReadTransacti
 
 MapInputs requireFinishedInputs(const rdf::ReadTransaction& transaction, const std::filesystem::path& file) {
   if (!requireFinished(file, transaction))
-    throw Error(ErrorKind::InvalidArgument, file.string() + ": holds no map that a build has made; build one first");
+    throw Error(ErrorKind::StoreUnavailable, file.string() + ": holds no map that a build has made; build one first");
   MapInputs inputs = storedInputs(transaction);
   if (inputs.hash().hex() != storedState(transaction)->inputs_hash) refuseOtherVersion(file);
   return inputs;

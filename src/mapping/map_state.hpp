@@ -26,8 +26,8 @@ bool requireFinished(const std::filesystem::path& file, const rdf::ReadTransacti
 
 void storeInputs(rdf::WriteTransaction& transaction, const MapInputs& inputs);
 MapInputs storedInputs(const rdf::ReadTransaction& transaction);
-/// The inputs of a map that can be changed. Throws Error (InvalidArgument), naming `file`, for a store that no build
-/// has made, an unfinished map, and one of another version of the stages.
+/// The inputs of a map that can be changed. Throws Error, naming `file`: StoreUnavailable for a store that no build has
+/// made, InvalidArgument for an unfinished map, and for one of another version of the stages.
 MapInputs requireFinishedInputs(const rdf::ReadTransaction& transaction, const std::filesystem::path& file);
 /// Throws Error (InvalidArgument): the map's stored outputs do not fit this program.
 [[noreturn]] void refuseOtherVersion(const std::filesystem::path& file);

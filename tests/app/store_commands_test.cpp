@@ -65,6 +65,21 @@ TEST_F(StoreCommands, WorkWithoutScans) {
   EXPECT_THAT(run("update " + in("w.clx") + " --strict" + change).out, HasSubstr("2 inserted"));
 }
 
+TEST_F(StoreCommands, OfAStoreThatNoBuildHasMadeEveryCommandOfMapsSaysThatItIsNoMap) {
+  ASSERT_EQ(run("load " + in("s.clx") + " " + in("two.nq")).code, 0);
+  const std::string store = in("s.clx"), campus = in("campus");
+  for (const std::string& arguments : std::vector<std::string>{
+           "extend " + store + " " + campus, "retract " + store + " 0000", "repose " + store + " " + campus,
+           "merge " + store + " " + in("map.clx") + " -o " + in("m.clx"),
+           "watch " + campus + " --interval 0.1 -o " + store, "rules apply " + store,
+           "rules try " + store + " outdoor.rules.yaml", "state " + store + " --object 1234 --is Tree",
+           "state " + store + " --list", "changes " + store, "explain " + store + " 1234",
+           "evaluate " + store + " --truth campus", "route " + store + " 0,0 1,1"}) {
+    SCOPED_TRACE(arguments);
+    expectError(run(arguments), 5, "holds no map");
+  }
+}
+
 TEST_F(StoreCommands, LoadLeavesNothingAfterAFault) {
   writeFile(path("faulty.nt"), "<http://x/a> <http://x/p> \"1\" .\n<http://x/a> <http://x/p> .\n");
   expectError(run("load " + in("none.clx") + " " + in("two.nq") + " " + in("faulty.nt")), 4, "faulty.nt:2");
