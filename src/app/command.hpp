@@ -55,6 +55,8 @@ void onRun(CLI::App& command, Session& session, std::function<ExitCode()> run);
 /// Data to stdout, with a line end. A closed pipe is not an error.
 void print(std::string_view text);
 void printJson(const Json& json);
+/// In one line, for readers that take line by line.
+void printJsonLine(const Json& json);
 
 void addInfo(CLI::App& app, Session& session);
 void addSimulate(CLI::App& app, Session& session);

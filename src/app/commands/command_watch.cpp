@@ -21,7 +21,7 @@ struct WatchOptions {
 
 void report(const WatchOptions& options, std::size_t added, std::size_t scans, std::size_t objects, bool as_json) {
   if (as_json)
-    printJson(Json{{"map", options.map.string()}, {"added", added}, {"scans", scans}, {"objects", objects}});
+    printJsonLine(Json{{"map", options.map.string()}, {"added", added}, {"scans", scans}, {"objects", objects}});
   else
     std::printf("%s: %zu new, %zu scans, %zu objects\n", options.map.c_str(), added, scans, objects);
   std::fflush(stdout);

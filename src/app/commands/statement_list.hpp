@@ -12,7 +12,7 @@ namespace cluxel::app {
 
 /// "4f0a… is clx:StreetSign: applied to …, the rules say clx:Lamp".
 std::string lineOf(const mapping::StatementOutcome& outcome);
-/// The same as an object, with the keys of printStatements().
+/// The same as an object, with the keys of printStatements() but for the author and the time.
 Json jsonOf(const mapping::StatementOutcome& outcome);
 /// One line, or one JSON object, for each statement.
 void printStatements(const std::vector<mapping::KnownStatement>& statements, const Session& session);

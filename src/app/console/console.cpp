@@ -55,4 +55,8 @@ void printJson(const Json& json) {
   print(json.dump(2, ' ', false, Json::error_handler_t::replace));
 }
 
+void printJsonLine(const Json& json) {
+  print(json.dump(-1, ' ', false, Json::error_handler_t::replace));
+}
+
 }  // namespace cluxel::app
