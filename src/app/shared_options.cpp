@@ -18,7 +18,7 @@ scan::ScanSetParams ScanOptions::params() const {
           .frame = frame,
           .remedies = {.poses = "name a poses file with --poses FILE",
                        .unit = "state the unit with --units mm, cm, m, ft or us-ft",
-                       .up = "state the up axis with --up y"}};
+                       .up = frame.up == scan::UpAxis::Y ? "leave --up y out" : "state the up axis with --up y"}};
 }
 
 void addScanOptions(CLI::App& command, ScanOptions& options) {

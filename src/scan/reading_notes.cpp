@@ -28,7 +28,8 @@ std::vector<std::string> ReadingNotes::add(const ScanReading& reading) {
           "far outside; " +
           remedies_.unit);
     else
-      notes.push_back(reading.source + ": warning: the ground is perpendicular to y, but z must point up; " +
+      notes.push_back(reading.source +
+                      ": warning: the ground is perpendicular to y of the map frame, but z must point up; " +
                       remedies_.up);
   }
   return notes;

@@ -170,6 +170,13 @@ TEST_F(Program, AnEmptyFileIsNoMapInEveryCommandThatNeedsOne) {
   }
 }
 
+TEST_F(Program, TheUpAxisThatIsStatedIsDoubtedWhereTheGroundTellsOtherwise) {
+  const std::string scan = path("campus/scan_000.pcd").string();
+  const Outcome stated = run("info " + scan + " --up y");
+  EXPECT_NE(stated.err.find("z must point up; leave --up y out\n"), std::string::npos) << stated.err;
+  EXPECT_EQ(run("info " + scan).err.find("--up"), std::string::npos);
+}
+
 /// A name that is too long is one of many reasons for which the system does not let the program look at a file.
 TEST_F(Program, WhatTheSystemRefusesToLookAtIsToldLikeWhatIsNotThere) {
   const std::string refused = path(std::string(300, 'x')).string(), fresh = path("of_refused.clx").string();
