@@ -74,6 +74,7 @@ enum class Remedy : std::uint8_t {
   ChooseInputs,   ///< choose the map whose ontology, rules and model a merge uses
   MoveScans,      ///< give scans of the map other poses
   MergeMaps,      ///< merge maps instead of adding scans
+  NameTime,       ///< tell from when on scans count as later
 };
 
 /// Base of all errors of the library. what() says what is wrong, where, and what to do.

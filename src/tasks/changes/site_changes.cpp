@@ -37,6 +37,8 @@ std::vector<double> scanTimes(const std::vector<mapping::Cloud>& clouds) {
 }
 
 double beginOfLastVisit(const std::vector<mapping::Cloud>& clouds) {
+  if (clouds.size() == 1)
+    throw Error(ErrorKind::InvalidArgument, "the map has one scan only: changes are told from scans of two visits");
   const std::vector<Visit> visits = visitsOf(clouds);
   if (visits.empty())
     throw Error(ErrorKind::InvalidArgument,
@@ -44,8 +46,8 @@ double beginOfLastVisit(const std::vector<mapping::Cloud>& clouds) {
                 "scans (times.txt, or a manifest)");
   if (visits.size() == 1)
     throw Error(ErrorKind::InvalidArgument,
-                "all clouds were taken without a pause of half an hour: tell from when on they count as "
-                "later");
+                "all clouds were taken without a pause of half an hour: tell from when on they count as later",
+                Remedy::NameTime);
   return visits.back().begin_s;
 }
 
