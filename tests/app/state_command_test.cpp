@@ -56,6 +56,20 @@ TEST_F(StateCommand, ANewLabelReplacesTheEarlierOneAndNotesAreAdded) {
   expectError(state(tree + " --label east --label west"), 2, "state: --label is given 2 times; give it once");
 }
 
+TEST_F(StateCommand, TellsWhichObjectAStatementIsAbout) {
+  const std::string tree = one("Tree"), other = path("other.clx").string(), merged = path("merged.clx").string();
+  fs::copy_file(map(), other, fs::copy_options::overwrite_existing);
+  ASSERT_EQ(state("--object " + tree + " --is clx:StreetLamp").code, 0);
+  ASSERT_EQ(run("state " + other + " --object " + tree + " --is clx:StreetSign").code, 0);
+  const Outcome report = run("merge " + map().string() + " " + other + " -o " + merged + " --json");
+  ASSERT_EQ(report.code, 0) << report.err;
+  const std::string list = run("state " + merged + " --list").out;
+  EXPECT_THAT(list, HasSubstr("  applied to object/"));
+  EXPECT_THAT(list, HasSubstr("  overruled, about object/"));
+  for (const auto& statement : nlohmann::json::parse(report.out).at("statements"))
+    EXPECT_THAT(statement.at("object").get<std::string>(), HasSubstr("https://w3id.org/cluxel/map/object/"));
+}
+
 TEST_F(StateCommand, AFaultyFileOfStatementsIsNamedWithItsFault) {
   ASSERT_EQ(state("--object " + one("Tree") + " --is clx:StreetLamp").code, 0);
   const fs::path file = path("edited.nq");

@@ -13,7 +13,9 @@ using mapping::KnownStatement;
 
 std::string lineOfKnown(const KnownStatement& known) {
   std::string line = known.statement.id().hex() + "  " + textOf(known.statement) + "  " + known.effect;
-  if (!known.object.empty()) line += " to object/" + mapping::localName(known.object);
+  const bool is_applied = known.effect == nameOf(mapping::StatementEffect::Applied);
+  if (!known.object.empty())
+    line += (is_applied ? " to object/" : ", about object/") + mapping::localName(known.object);
   if (known.contradicts) line += ", against the rules";
   if (known.contradicts && !known.rules_class.empty()) line += ", which say " + mapping::localName(known.rules_class);
   if (!known.author.empty()) line += "; by " + known.author;
