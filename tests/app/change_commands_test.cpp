@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // `extend`, `retract`, `repose`, `merge` and `watch` as a user runs them: the maps are those of `build`, dry runs write
 // nothing, and what was killed goes on when it is repeated.
+#include <fcntl.h>
 #include <gmock/gmock.h>
+#include <sys/file.h>
+#include <unistd.h>
 
 #include <array>
 #include <chrono>
@@ -117,9 +120,31 @@ TEST_F(ChangeCommands, RetractTakesScansOutAndMayBeRepeated) {
   EXPECT_THAT(again.out, HasSubstr("nothing changes"));
   EXPECT_THAT(again.err, HasSubstr("was retracted already"));
   expectError(run("retract " + map + " scan_007.pcd"), 3, "has no cloud 'scan_007.pcd'");
+  expectError(run("retract " + map + " elsewhere/scan_000.pcd"), 3,
+              "a path must be that with which the scan was given");
   expectError(run("retract " + map + " scan_000.pcd scan_001.pcd"), 2, "no scan would be left");
   ASSERT_EQ(run("extend " + map + " " + scan(2)).code, 0);
-  EXPECT_THAT(run("retract " + map + " scan_002.pcd").out, HasSubstr("1 removed"));
+  const std::string other_path = in("campus/../campus/scan_002.pcd");
+  EXPECT_THAT(run("retract " + map + " " + other_path).out, HasSubstr("1 removed"));
+  EXPECT_THAT(run("retract " + map + " " + other_path).err, HasSubstr("was retracted already"));
+}
+
+TEST_F(ChangeCommands, WaitForNobodyWhoChangesTheMap) {
+  const std::string map = copied("a.clx");
+  const int lock = ::open((map + ".build-lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+  ASSERT_EQ(::flock(lock, LOCK_EX), 0);
+  for (const std::string& command : {"extend " + map + " " + scan(2), "retract " + map + " scan_001.pcd"})
+    expectError(run(command), 5, "is changing it; wait until that has ended");
+  ::close(lock);
+  fs::remove(map + ".build-lock");
+}
+
+TEST_F(ChangeCommands, ChangesBetweenVisitsNeedTwoOfThem) {
+  expectError(run("changes " + in("a.clx")), 2, "hint: --since TIME tells from when on scans count as later");
+  ASSERT_EQ(build(scan(0), "one.clx"), 0);
+  const Outcome one = run("changes " + in("one.clx"));
+  expectError(one, 2, "the map has one scan only");
+  EXPECT_EQ(one.err.find("--since"), std::string::npos) << one.err;
 }
 
 TEST_F(ChangeCommands, ReposeMovesScansThereAndBack) {
@@ -186,8 +211,12 @@ TEST_F(ChangeCommands, MergeTakesATransformAndTheRulesThatAreNamed) {
 TEST_F(ChangeCommands, WatchAddsWhatArrives) {
   fs::remove(path("watched.clx"));
   const std::string watch = "watch " + in("campus") + " -o " + in("watched.clx") + " --interval 0.05 --idle 0.5";
-  const Outcome first = run(watch);
+  const Outcome first = run(watch + " --json");
   ASSERT_EQ(first.code, 0) << first.err;
+  std::istringstream lines(first.out);
+  std::size_t scans = 0;
+  for (std::string line; std::getline(lines, line);) scans = Json::parse(line).at("scans");
+  EXPECT_EQ(scans, 4U) << "of the last commit, each of which is one line: " << first.out;
   EXPECT_TRUE(canonical("watched.clx") == canonical("whole.clx"));
   EXPECT_EQ(run(watch).code, 3) << "nothing was added";
   EXPECT_EQ(run(watch + " --model oakland --rules outdoor.rules.yaml").code, 3) << "those of the map";

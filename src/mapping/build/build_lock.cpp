@@ -60,7 +60,7 @@ BuildLock::BuildLock(const fs::path& map) : file_(buildLockOf(map)) {
     if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
       const std::string holder = holderOf(descriptor);
       ::close(descriptor);
-      refuse(map, holder + " is building or compacting it; wait until that has ended");
+      refuse(map, holder + " is changing it; wait until that has ended");
     }
     if (isNamed(descriptor, file_)) {
       descriptor_ = descriptor;

@@ -31,7 +31,10 @@ bool isNamed(const scan::ScanId& id, const fs::path& source, const std::string& 
   if (const std::size_t slash = name.rfind('/'); slash != std::string::npos && name.find("cloud/") != std::string::npos)
     digits = name.substr(slash + 1);
   if (digits.size() >= kMinDigits && id.hex().starts_with(digits)) return true;
-  return source == name || source.filename() == name || source.stem() == name;  // "0001" may be meant as a file
+  if (source == name || source.filename() == name || source.stem() == name)
+    return true;  // "0001" may be meant as a file
+  std::error_code ignored;
+  return name.find('/') != std::string::npos && fs::equivalent(source, name, ignored);
 }
 
 }  // namespace
@@ -286,7 +289,11 @@ std::vector<scan::ScanId> cloudsNamed(const fs::path& file, std::span<const std:
           fitting.push_back(scan.id);
     }
     if (fitting.empty())
-      throw Error(ErrorKind::NotFound, file.string() + ": has no cloud '" + name + "'", Remedy::ListClouds);
+      throw Error(
+          ErrorKind::NotFound,
+          file.string() + ": has no cloud '" + name + "'" +
+              (name.find('/') != std::string::npos ? "; a path must be that with which the scan was given" : ""),
+          Remedy::ListClouds);
     ids.insert(ids.end(), fitting.begin(), fitting.end());
   }
   return ids;
