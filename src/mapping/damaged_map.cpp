@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One wording for all of them.
+// The blocks of tiles and objects; faults of the file itself are told by rdf/file.
 #include "mapping/damaged_map.hpp"
 
 #include "cluxel/error.hpp"

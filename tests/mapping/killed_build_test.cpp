@@ -100,6 +100,7 @@ TEST_F(KilledBuild, AChangeThatIsCompactedIsAllOrNothing) {
 
 TEST_F(KilledBuild, LeavesAFileThatIsNotUpdatedBeforeItsFirstCommit) {
   rdf::Environment::open(map(), rdf::OpenMode::Create);
+  writeFile(map().string() + ".build-lock", "");
   EXPECT_THROW(updateMap(map(), "INSERT DATA { <urn:a> <urn:b> 1 }", {}, silence()), Error);
   EXPECT_TRUE(isToBuild(map()));
 }

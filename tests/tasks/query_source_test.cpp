@@ -148,10 +148,12 @@ TEST(ShippedQuestions, HaveATitleAndExactlyTheColumnsThatTheySelect) {
   }
 }
 
-TEST(QuerySources, AFileThatHoldsNothingAnswersNothing) {
+TEST(QuerySources, ABuildThatHasCommittedNothingAnswersNothing) {
   const ScratchFolder folder;
   const std::filesystem::path file = folder.path() / "map.clx";
-  Environment::open(file, OpenMode::Create);  // as a build leaves it that is killed before its first commit
+  Environment::open(file, OpenMode::Create);
+  EXPECT_EQ(openQuerySource(file).reader().size(), 0U) << "a store";
+  writeFile(folder.path() / "map.clx.build-lock", "");  // which a killed build leaves, too
   EXPECT_THROW(openQuerySource(file), Error);
   {
     WriteTransaction transaction = Environment::open(file, OpenMode::ReadWrite)->write();

@@ -48,6 +48,11 @@ bool isForbidden(const fs::path& path) {
 
 }  // namespace
 
+bool hasBuildLock(const fs::path& map) {
+  std::error_code error;
+  return fs::exists(buildLockOf(map), error);
+}
+
 bool mayWriteMap(const fs::path& map) {
   return !isForbidden(fs::absolute(map).parent_path()) && !isForbidden(map) && !isForbidden(rdf::lockFileOf(map)) &&
          !isForbidden(buildLockOf(map));

@@ -22,6 +22,9 @@ class BuildLock {
   int descriptor_ = -1;
 };
 
+/// Whether a process holds the lock, or was killed while it did.
+bool hasBuildLock(const std::filesystem::path& map);
+
 /// False when this process has no right to write a map, its lock files, or the folder. `map` need not exist.
 bool mayWriteMap(const std::filesystem::path& map);
 

@@ -69,13 +69,22 @@ std::set<std::string> sayingsOf(const std::vector<Quad>& quads) {
 
 std::uint64_t copyOperatorStatements(const rdf::QuadReader& from, rdf::WriteTransaction& into,
                                      const std::string& blank_suffix) {
-  const rdf::QuadReader there(static_cast<const rdf::ReadTransaction&>(into));
-  const std::set<std::string> known = sayingsOf(operatorStatements(there));
-  std::vector<Quad> added;
-  for (const std::vector<Quad>& together : togetherIn(operatorStatements(from, blank_suffix)))
-    if (!known.contains(sayingOf(together))) added.insert(added.end(), together.begin(), together.end());
-  addOperatorStatements(into, added);
-  return added.size();
+  const std::vector<Quad> quads = operatorStatements(from, blank_suffix);
+  addOperatorStatements(into, quads);
+  return quads.size();
+}
+
+void removeRepeatedSayings(rdf::WriteTransaction& transaction) {
+  const rdf::QuadReader reader(static_cast<const rdf::ReadTransaction&>(transaction));
+  rdf::QuadWriter writer(transaction);
+  std::set<std::string> known;
+  for (const std::vector<Quad>& together : togetherIn(operatorStatements(reader))) {
+    if (known.insert(sayingOf(together)).second) continue;
+    for (const Quad& quad : together)
+      writer.remove(rdf::QuadIds{writer.intern(quad.subject), writer.intern(quad.predicate), writer.intern(quad.object),
+                                 writer.intern(quad.graph)});
+  }
+  writer.flush();
 }
 
 void addOperatorStatements(rdf::WriteTransaction& transaction, const std::vector<Quad>& quads) {

@@ -18,9 +18,8 @@ namespace cluxel::mapping {
 /// (StoreUnavailable) for what is no map.
 bool isToBuild(const std::filesystem::path& map);
 
-/// Whether the file is as a build leaves it that is killed before its first commit.
-bool holdsNothing(const rdf::ReadTransaction& transaction);
-/// Throws Error (StoreUnavailable) for such a file: it answers nothing.
+/// Throws Error (StoreUnavailable) for a file in which a first build has begun and committed nothing: it answers
+/// nothing. An empty store that was loaded is none.
 void requireSomething(const rdf::ReadTransaction& transaction, const std::filesystem::path& file);
 
 class WorkFile {

@@ -289,11 +289,12 @@ std::vector<scan::ScanId> cloudsNamed(const fs::path& file, std::span<const std:
           fitting.push_back(scan.id);
     }
     if (fitting.empty())
-      throw Error(
-          ErrorKind::NotFound,
-          file.string() + ": has no cloud '" + name + "'" +
-              (name.find('/') != std::string::npos ? "; a path must be that with which the scan was given" : ""),
-          Remedy::ListClouds);
+      throw Error(ErrorKind::NotFound,
+                  file.string() + ": has no cloud '" + name + "'" +
+                      (name.find('/') != std::string::npos
+                           ? "; a path must be that of the file that was given, or as it was given then"
+                           : ""),
+                  Remedy::ListClouds);
     ids.insert(ids.end(), fitting.begin(), fitting.end());
   }
   return ids;

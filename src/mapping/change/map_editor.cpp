@@ -267,6 +267,12 @@ ChangeReport MapEditor::takeReport() {
 void MapEditor::handOnNames() {
   rdf::WriteTransaction transaction = begin();
   report_.after = storedMembers(transaction);
+  // Several maps may have the same object.
+  std::stable_sort(report_.before.begin(), report_.before.end(),
+                   [](const auto& a, const auto& b) { return a.id < b.id; });
+  report_.before.erase(std::unique(report_.before.begin(), report_.before.end(),
+                                   [](const auto& a, const auto& b) { return a.id == b.id; }),
+                       report_.before.end());
   report_.objects = compareObjects(report_.before, report_.after);
   noteStatements();
   if (!last_activity_.empty()) addLineage(transaction, last_activity_, report_.objects);

@@ -91,13 +91,14 @@ class Merge {
 
  private:
   void requireDifferentFiles() const {
+    std::error_code error;
     for (std::size_t i = 0; i < maps_.size(); ++i) {
-      if (!fs::exists(maps_[i].file)) continue;  // opening it tells
+      if (!fs::exists(maps_[i].file, error)) continue;  // opening it tells
       if (fs::exists(target_) && fs::equivalent(maps_[i].file, target_))
         throw Error(ErrorKind::InvalidArgument,
                     target_.string() + ": is one of the maps; name another file, or extend that map");
       for (std::size_t j = 0; j < i; ++j)
-        if (fs::equivalent(maps_[i].file, maps_[j].file))
+        if (fs::equivalent(maps_[i].file, maps_[j].file, error))
           throw Error(ErrorKind::InvalidArgument, maps_[i].file.string() + ": is named twice");
     }
   }
@@ -222,6 +223,7 @@ class Merge {
       copyHistory(readers_[i].quads(), additions.transaction());
     }
     leaveOutWithdrawn(additions);
+    removeRepeatedSayings(additions.transaction());
     std::vector<std::size_t> others;
     for (std::size_t i = 0; i < maps_.size(); ++i) {
       if (i == base_) continue;

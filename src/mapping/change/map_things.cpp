@@ -17,7 +17,7 @@ using rdf::vocabulary::kGraphHistory;
 
 /// Objects before and after a change, matched by successorsOf().
 struct Heirs {
-  std::vector<std::vector<std::size_t>> before_of;     ///< by object after: those whose name it inherits
+  std::vector<std::vector<std::size_t>> before_of;     ///< by object after: those whose name it may inherit
   std::vector<std::vector<std::size_t>> ancestors_of;  ///< by object after: all that went on in it
 };
 
@@ -37,6 +37,7 @@ std::map<ContentHash, std::size_t> sameObjects(const std::vector<ObjectMembers>&
 
 Heirs heirsOf(const std::vector<ObjectMembers>& before, const std::vector<ObjectMembers>& after, ObjectsOf objects_of) {
   Heirs heirs{std::vector<std::vector<std::size_t>>(after.size()), std::vector<std::vector<std::size_t>>(after.size())};
+  std::vector<std::vector<std::size_t>> by_place_of(after.size());
   const auto same = sameObjects(before, after, objects_of);
   ObjectList others_before, others_after;
   std::vector<std::size_t> number_before, number_after;
@@ -47,19 +48,23 @@ Heirs heirsOf(const std::vector<ObjectMembers>& before, const std::vector<Object
       others_after.push_back(&after[a]), number_after.push_back(a);
   for (std::size_t b = 0; b < before.size(); ++b)
     if (!same.contains(before[b].id)) others_before.push_back(&before[b]), number_before.push_back(b);
-  const auto successors = successorsOf(others_before, others_after);
+  const auto successors = successorsOf(others_before, objects_of, others_after);
   for (std::size_t i = 0; i < successors.size(); ++i) {
     const std::size_t b = number_before[i];
     std::optional<std::size_t> heir;
     std::size_t most = 0;
-    for (const auto& [other, count] : successors[i]) {
+    bool is_by_place = false;
+    for (const auto& [other, count, by_place] : successors[i]) {
       const std::size_t a = number_after[other];
       heirs.ancestors_of[a].push_back(b);
       if (heir && (count < most || (count == most && after[*heir].id < after[a].id))) continue;
-      heir = a, most = count;
+      heir = a, most = count, is_by_place = by_place;
     }
-    if (heir) heirs.before_of[*heir].push_back(b);
+    if (heir) (is_by_place ? by_place_of[*heir] : heirs.before_of[*heir]).push_back(b);
   }
+  // A name that seeds hand on is surer than one that places do.
+  for (std::size_t a = 0; a < after.size(); ++a)
+    if (heirs.before_of[a].empty()) heirs.before_of[a] = std::move(by_place_of[a]);
   return heirs;
 }
 

@@ -18,9 +18,6 @@
 
 namespace cluxel::mapping {
 
-/// Whose objects are compared: those of several maps may have common members.
-enum class ObjectsOf { OneMap, SeveralMaps };
-
 /// Tells of an object that is not given whether it was there before a change and is after it.
 using GoesOn = std::function<bool(const ContentHash& object)>;
 

@@ -4,6 +4,8 @@
 
 #include <array>
 #include <cmath>
+#include <set>
+#include <tuple>
 #include <unordered_map>
 
 namespace cluxel::mapping {
@@ -36,6 +38,7 @@ struct Lookout {
   Steps steps{};
   std::int64_t nearest = kNear * kNear;
   std::uint32_t owner = kNoOwner;
+  std::size_t member = 0;  ///< of the owner
 };
 
 class PlaceGrid {
@@ -47,7 +50,7 @@ class PlaceGrid {
   const std::vector<Lookout>& lookouts() const { return lookouts_; }
 
   template <typename IsBetter>
-  void offer(const Steps& steps, std::uint32_t owner, const IsBetter& is_better) {
+  void offer(const Steps& steps, std::uint32_t owner, std::size_t member, const IsBetter& is_better) {
     for (std::int64_t x = -1; x <= 1; ++x)
       for (std::int64_t y = -1; y <= 1; ++y)
         for (std::int64_t z = -1; z <= 1; ++z) {
@@ -58,7 +61,7 @@ class PlaceGrid {
             const std::int64_t distance = squaredDistance(lookout.steps, steps);
             if (distance > lookout.nearest) continue;
             if (distance == lookout.nearest && !is_better(owner, lookout.owner)) continue;
-            lookout.nearest = distance, lookout.owner = owner;
+            lookout.nearest = distance, lookout.owner = owner, lookout.member = member;
           }
         }
   }
@@ -84,28 +87,39 @@ MemberPlace placeOf(const Eigen::Vector3d& p_map) {
   return place;
 }
 
-std::vector<std::vector<SharedMembers>> sharedBySeedOrPlace(const ObjectList& some, const ObjectList& others) {
-  std::vector<std::map<std::uint32_t, std::size_t>> shared(some.size());
-  const SeedOwners owners(others);
+std::vector<std::vector<SharedMembers>> sharedBySeedOrPlace(const ObjectList& objects, ObjectsOf objects_of,
+                                                            const ObjectList& others) {
+  std::vector<std::map<std::uint32_t, SharedMembers>> shared(objects.size());
+  const auto add = [&](std::uint32_t object, std::uint32_t other) {
+    ++shared[object].try_emplace(other, SharedMembers{other}).first->second.count;
+  };
+  const SeedOwners owners(others), owners_here(objects_of == ObjectsOf::OneMap ? objects : ObjectList{});
   PlaceGrid grid;
-  for (std::uint32_t object = 0; object < some.size(); ++object)
-    for (std::size_t member = 0; member < some[object]->seeds.size(); ++member) {
-      const std::uint32_t owner = owners.ownerOf(some[object]->seeds[member]);
+  for (std::uint32_t object = 0; object < objects.size(); ++object)
+    for (std::size_t member = 0; member < objects[object]->seeds.size(); ++member) {
+      const std::uint32_t owner = owners.ownerOf(objects[object]->seeds[member]);
       if (owner != kNoOwner)
-        ++shared[object][owner];
-      else if (const MemberPlace place = some[object]->placeOf(member); place != kNoMemberPlace)
+        add(object, owner);
+      else if (const MemberPlace place = objects[object]->placeOf(member); place != kNoMemberPlace)
         grid.add({object, stepsOf(place)});
     }
+  const auto is_better = [&](std::uint32_t a, std::uint32_t b) {
+    return b == kNoOwner || others[a]->id < others[b]->id;
+  };
   for (std::uint32_t other = 0; other < others.size() && !grid.lookouts().empty(); ++other)
-    for (const MemberPlace place : others[other]->places)
-      if (place != kNoMemberPlace)
-        grid.offer(stepsOf(place), other,
-                   [&](std::uint32_t a, std::uint32_t b) { return b == kNoOwner || others[a]->id < others[b]->id; });
+    for (std::size_t member = 0; member < others[other]->places.size(); ++member)
+      if (const MemberPlace place = others[other]->places[member];
+          place != kNoMemberPlace && owners_here.ownerOf(others[other]->seeds[member]) == kNoOwner)
+        grid.offer(stepsOf(place), other, member, is_better);
+  std::set<std::tuple<std::uint32_t, std::uint32_t, std::size_t>> met;  // object, other and its member
   for (const Lookout& lookout : grid.lookouts())
-    if (lookout.owner != kNoOwner) ++shared[lookout.object][lookout.owner];
-  std::vector<std::vector<SharedMembers>> lists(some.size());
-  for (std::size_t object = 0; object < some.size(); ++object)
-    for (const auto& [other, count] : shared[object]) lists[object].push_back({other, count});
+    if (lookout.owner != kNoOwner && met.emplace(lookout.object, lookout.owner, lookout.member).second) {
+      add(lookout.object, lookout.owner);
+      shared[lookout.object].at(lookout.owner).is_by_place = true;
+    }
+  std::vector<std::vector<SharedMembers>> lists(objects.size());
+  for (std::size_t object = 0; object < objects.size(); ++object)
+    for (const auto& [other, members] : shared[object]) lists[object].push_back(members);
   return lists;
 }
 

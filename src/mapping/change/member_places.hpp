@@ -19,12 +19,15 @@ MemberPlace placeOf(const Eigen::Vector3d& p_map);
 struct SharedMembers {
   std::uint32_t other = 0;  ///< number in the list of the others
   std::size_t count = 0;
+  bool is_by_place = false;  ///< the seeds alone would be too few
 };
 
-/// For each of `some` objects, which of the others hold its members, ascending: by seed point or, where no other object
-/// has the seed, the one with the nearest member within kSamePlace_m. Equally near: the one with the smallest id. Cost:
-/// linear in the members.
-std::vector<std::vector<SharedMembers>> sharedBySeedOrPlace(const ObjectList& some, const ObjectList& others);
+/// For each object, which of the others hold its members, ascending: by seed point or, where no other object has the
+/// seed, the one with the nearest member within kSamePlace_m. Equally near: the one with the smallest id. Members of
+/// the others whose seed one of the objects has are not near to anything, if the objects are of one map. Of several
+/// members that lie nearest to the same one, one counts. Cost: linear in the members.
+std::vector<std::vector<SharedMembers>> sharedBySeedOrPlace(const ObjectList& objects, ObjectsOf objects_of,
+                                                            const ObjectList& others);
 
 /// A cluxel reaches 0.2 m from its seed, so that another one of the same points has its centre nearer than this.
 inline constexpr double kSamePlace_m = 0.3;

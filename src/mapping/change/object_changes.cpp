@@ -18,10 +18,10 @@ struct Succession {
   std::vector<std::vector<std::uint32_t>> after_of, before_of;
 };
 
-Succession successionOf(const ObjectList& before, const ObjectList& after) {
+Succession successionOf(const ObjectList& before, ObjectsOf objects_of, const ObjectList& after) {
   Succession succession{std::vector<std::vector<std::uint32_t>>(before.size()),
                         std::vector<std::vector<std::uint32_t>>(after.size())};
-  const auto successors = successorsOf(before, after);
+  const auto successors = successorsOf(before, objects_of, after);
   for (std::uint32_t b = 0; b < before.size(); ++b)
     for (const SharedMembers& successor : successors[b]) {
       succession.after_of[b].push_back(successor.other);
@@ -67,8 +67,8 @@ std::vector<ObjectMembers> membersOf(const std::vector<rules::SemanticObject>& o
 
 namespace {
 
-ObjectChanges changesBetween(const ObjectList& before, const ObjectList& after) {
-  const Succession succession = successionOf(before, after);
+ObjectChanges changesBetween(const ObjectList& before, ObjectsOf objects_of, const ObjectList& after) {
+  const Succession succession = successionOf(before, objects_of, after);
   ObjectChanges changes;
   for (std::size_t b = 0; b < before.size(); ++b)
     if (succession.after_of[b].empty()) changes.gone.push_back(before[b]->id);
@@ -98,7 +98,7 @@ ObjectChanges changesBetween(const ObjectList& before, const ObjectList& after) 
 }  // namespace
 
 ObjectChanges compareObjects(const std::vector<ObjectMembers>& before, const std::vector<ObjectMembers>& after) {
-  return changesBetween(listOf(before), listOf(after));
+  return changesBetween(listOf(before), ObjectsOf::SeveralMaps, listOf(after));
 }
 
 ObjectChanges compareStates(const std::vector<ObjectMembers>& before, const std::vector<ObjectMembers>& after,
@@ -110,7 +110,7 @@ ObjectChanges compareStates(const std::vector<ObjectMembers>& before, const std:
                       std::back_inserter(only_before), byId);
   std::set_difference(all_after.begin(), all_after.end(), all_before.begin(), all_before.end(),
                       std::back_inserter(only_after), byId);
-  ObjectChanges changes = changesBetween(only_before, only_after);
+  ObjectChanges changes = changesBetween(only_before, ObjectsOf::OneMap, only_after);
   changes.unchanged = others + after.size() - only_after.size();
   return changes;
 }

@@ -25,8 +25,8 @@ struct ObjectMembers {
   ContentHash id;
   std::string class_iri;
   std::vector<std::uint64_t> seeds;  ///< hashes of (scan, point), in no order
-  /// Of the cluxels, in the order of the seeds. kNoMemberPlace where the seeds of a tile stay, and empty where they all
-  /// do; of objects of a whole class, which go on by their name.
+  /// Of the cluxels, in the order of the seeds. kNoMemberPlace where a change leaves the cluxels of a tile as they are,
+  /// and empty where it leaves them all do; of objects of a whole class, which go on by their name.
   std::vector<MemberPlace> places = {};
 
   MemberPlace placeOf(std::size_t member) const { return places.empty() ? kNoMemberPlace : places[member]; }
@@ -37,6 +37,9 @@ std::uint64_t memberKey(const ContentHash& scan, std::uint32_t point);
 
 std::vector<ObjectMembers> membersOf(const std::vector<rules::SemanticObject>& objects,
                                      const perception::SceneCluxels& cluxels);
+
+/// Whose objects are compared: those of several maps may have common members.
+enum class ObjectsOf : std::uint8_t { OneMap, SeveralMaps };
 
 /// The objects that an object was derived from.
 struct DerivedObject {

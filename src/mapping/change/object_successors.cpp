@@ -12,21 +12,24 @@ using Shared = std::vector<std::vector<SharedMembers>>;
 
 class SuccessorSearch {
  public:
-  SuccessorSearch(const ObjectList& before, const ObjectList& after)
-      : before_(before), after_(after), successors_(before.size()), has_predecessor_(after.size(), 0) {}
+  SuccessorSearch(const ObjectList& before, ObjectsOf objects_of, const ObjectList& after)
+      : before_(before),
+        objects_of_(objects_of),
+        after_(after),
+        successors_(before.size()),
+        has_predecessor_(after.size(), 0) {}
 
   Shared run() {
     addByNameAndSeeds();
-    addOfOrphans();
-    addOfNewcomers();
+    addByPlaces();
     for (auto& list : successors_)
       std::sort(list.begin(), list.end(), [](const auto& a, const auto& b) { return a.other < b.other; });
     return std::move(successors_);
   }
 
  private:
-  void add(std::uint32_t before, std::uint32_t after, std::size_t count) {
-    successors_[before].push_back({after, count});
+  void add(std::uint32_t before, std::uint32_t after, std::size_t count, bool is_by_place = false) {
+    successors_[before].push_back({after, count, is_by_place});
     has_predecessor_[after] = 1;
   }
 
@@ -49,33 +52,22 @@ class SuccessorSearch {
     }
   }
 
-  /// Objects before that go on in none.
-  void addOfOrphans() {
-    std::vector<std::uint32_t> numbers;
-    ObjectList orphans;
+  /// For objects before that go on in none, and for objects after in which none goes on.
+  void addByPlaces() {
+    const auto has_places = [](const ObjectMembers* object) { return !object->places.empty(); };
+    const std::vector<char> has_seeds_of_before = has_predecessor_;
+    std::vector<char> is_orphan;
+    for (const auto& successors : successors_) is_orphan.push_back(successors.empty() ? 1 : 0);
+    if (std::none_of(before_.begin(), before_.end(), has_places)) return;
+    const Shared shared = sharedBySeedOrPlace(before_, objects_of_, after_);
     for (std::uint32_t b = 0; b < before_.size(); ++b)
-      if (successors_[b].empty() && !before_[b]->places.empty()) orphans.push_back(before_[b]), numbers.push_back(b);
-    if (orphans.empty()) return;
-    const Shared shared = sharedBySeedOrPlace(orphans, after_);
-    for (std::size_t i = 0; i < orphans.size(); ++i)
-      for (const auto& [a, count] : shared[i])
-        if (isEnough(numbers[i], a, count)) add(numbers[i], a, count);
-  }
-
-  /// Objects after in which none goes on.
-  void addOfNewcomers() {
-    std::vector<std::uint32_t> numbers;
-    ObjectList newcomers;
-    for (std::uint32_t a = 0; a < after_.size(); ++a)
-      if (has_predecessor_[a] == 0 && !after_[a]->places.empty()) newcomers.push_back(after_[a]), numbers.push_back(a);
-    if (newcomers.empty()) return;
-    const Shared shared = sharedBySeedOrPlace(newcomers, before_);
-    for (std::size_t i = 0; i < newcomers.size(); ++i)
-      for (const auto& [b, count] : shared[i])
-        if (isEnough(b, numbers[i], count)) add(b, numbers[i], count);
+      for (const auto& [a, count, is_by_place] : shared[b])
+        if (is_by_place && (is_orphan[b] != 0 || has_seeds_of_before[a] == 0) && isEnough(b, a, count))
+          add(b, a, count, true);
   }
 
   const ObjectList& before_;
+  ObjectsOf objects_of_;
   const ObjectList& after_;
   Shared successors_;
   std::vector<char> has_predecessor_;
@@ -83,8 +75,8 @@ class SuccessorSearch {
 
 }  // namespace
 
-Shared successorsOf(const ObjectList& before, const ObjectList& after) {
-  return SuccessorSearch(before, after).run();
+Shared successorsOf(const ObjectList& before, ObjectsOf objects_of, const ObjectList& after) {
+  return SuccessorSearch(before, objects_of, after).run();
 }
 
 }  // namespace cluxel::mapping

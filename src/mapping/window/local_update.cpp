@@ -162,7 +162,9 @@ class LocalUpdate {
     TileSet likely;
     for (std::uint32_t layers = kLayersOfSeam + 1; layers >= kLayersOfSeam; --layers) {
       likely = likelyTiles(transaction_, map_, changes_.tiles, lone_objects_, reach_m_, layers);
-      if (static_cast<double>(likely.size()) <= params_.max_window_share * static_cast<double>(map_.size())) break;
+      if (static_cast<double>(perception::unionOf(likely, more_).size()) <=
+          params_.max_window_share * static_cast<double>(map_.size()))
+        break;
     }
     more_.merge(likely);
   }

@@ -25,7 +25,7 @@ class Deciding {
       number_.emplace(window.scene.primitives[i].id, i);
   }
 
-  /// What is known too little about counts as changed, too, until all that is decided is known as a whole.
+  /// An object with a decided part must be known as a whole. Where it is not, its other parts count as changed, too.
   std::optional<WindowDecision> take(rules::LocalRun& run, TileSet& lacking) {
     for (bool is_found = run.decide(); is_found; is_found = run.decideWith(unsure_)) {
       unsure_.clear();

@@ -74,8 +74,8 @@ class LocalRun {
 
   /// Runs the rules, and compares traces in the layers around the change with those stored. What has another trace
   /// counts as changed, and so do the members of a step that reaches across these layers. False when a layer is not
-  /// within the window: a window that has all layers() may do. Several changes may be decided in windows of their own;
-  /// each window marks all that is dirty in it. To be called once.
+  /// within the window: then try again in a window that holds the layers that layers() gives now. Several changes may
+  /// be decided in windows of their own; each window marks all that is dirty in it. To be called once.
   bool decide();
   /// After decide(): looks again, with these primitives counted as changed. False, too, when they all are already.
   bool decideWith(std::span<const perception::PrimitiveIndex> changed);

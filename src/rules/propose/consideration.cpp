@@ -155,12 +155,14 @@ std::optional<std::vector<Consideration>> considerIn(const LocalInput& window, c
   const ReasoningResult result = finishedRun(state);
   if (!seam.find(result.traces, state.trace.steps())) return std::nullopt;
   // Within a seam, too, all is in the state in which it would be in the run over the whole. A layer more that counts as
-  // changed moves the seam by a layer.
-  const std::uint32_t seen = considering.lastSeen(seam.layers());
-  if (seen == kNoLayer) return std::nullopt;
-  for (std::uint32_t last = kLastLayer; last < seen; ++last) {
-    seam.addChanged(primitivesUpTo(1, seam.layers()));
-    if (!seam.find(result.traces, state.trace.steps())) return std::nullopt;
+  // changed brings all that was seen a layer nearer.
+  constexpr int kMostLayers = 20;  // a rule that looks for objects sees things in no layer
+  std::uint32_t seen = considering.lastSeen(seam.layers());
+  for (int layer = 0; seen > kLastLayer; ++layer) {
+    if (layer == kMostLayers || !seam.addChanged(primitivesUpTo(1, seam.layers())) ||
+        !seam.find(result.traces, state.trace.steps()))
+      return std::nullopt;
+    seen = std::min(seen == kNoLayer ? kNoLayer : seen - 1, considering.lastSeen(seam.layers()));
   }
   return considering.take();
 }
