@@ -120,8 +120,7 @@ TEST_F(ChangeCommands, RetractTakesScansOutAndMayBeRepeated) {
   EXPECT_THAT(again.out, HasSubstr("nothing changes"));
   EXPECT_THAT(again.err, HasSubstr("was retracted already"));
   expectError(run("retract " + map + " scan_007.pcd"), 3, "has no cloud 'scan_007.pcd'");
-  expectError(run("retract " + map + " elsewhere/scan_000.pcd"), 3,
-              "a path must be that of the file that was given");
+  expectError(run("retract " + map + " elsewhere/scan_000.pcd"), 3, "a path must be that of the file that was given");
   expectError(run("retract " + map + " scan_000.pcd scan_001.pcd"), 2, "no scan would be left");
   ASSERT_EQ(run("extend " + map + " " + scan(2)).code, 0);
   const std::string other_path = in("campus/../campus/scan_002.pcd");

@@ -36,8 +36,7 @@ using perception::TileKey;
 using perception::TileSet;
 
 constexpr int kRings = 1;  ///< of tiles around the changed ones that a window holds at least
-/// The number of layers around a change that the first window is to hold: those of the seam, and one more because what
-/// lies beside a change may come out otherwise, unless the window would be too large with it.
+/// The first window holds one more, if it can: what lies beside a change may come out otherwise.
 constexpr std::uint32_t kLayersOfSeam = rules::kLastLayer + 1;
 constexpr std::size_t kMaxAttempts = 40;
 constexpr std::size_t kNarrowAttempts = 6;  ///< later ones add the tiles around, too: each attempt costs a window
@@ -159,14 +158,12 @@ class LocalUpdate {
   /// A first window that is large enough spares an attempt.
   void beginWithLikelyTiles() {
     lone_objects_ = objectsOfLoneSeeds(parsed_.rules);
-    TileSet likely;
-    for (std::uint32_t layers = kLayersOfSeam + 1; layers >= kLayersOfSeam; --layers) {
-      likely = likelyTiles(transaction_, map_, changes_.tiles, lone_objects_, reach_m_, layers);
-      if (static_cast<double>(perception::unionOf(likely, more_).size()) <=
-          params_.max_window_share * static_cast<double>(map_.size()))
-        break;
-    }
-    more_.merge(likely);
+    const auto likely = [&](std::uint32_t layers) {
+      return perception::unionOf(likelyTiles(transaction_, map_, changes_.tiles, lone_objects_, reach_m_, layers),
+                                 more_);
+    };
+    TileSet wide = likely(kLayersOfSeam + 1);
+    more_ = isTooLarge(wide.size()) ? likely(kLayersOfSeam) : std::move(wide);
   }
 
   /// Whether the window lacks tiles. The next one has them.
@@ -220,8 +217,10 @@ class LocalUpdate {
   /// A window that ends up too large is assembled for nothing. After the first attempt about as many tiles follow as it
   /// asked for.
   bool willBeTooLarge(const TileSet& window, const TileSet& beyond) const {
-    return static_cast<double>(window.size() + 2 * beyond.size()) >
-           params_.max_window_share * static_cast<double>(map_.size());
+    return isTooLarge(window.size() + 2 * beyond.size());
+  }
+  bool isTooLarge(std::size_t tiles) const {
+    return static_cast<double>(tiles) > params_.max_window_share * static_cast<double>(map_.size());
   }
 
   /// Whether a cloud that stays has another time. Observations anywhere tell it.
