@@ -54,11 +54,13 @@ class SuccessorSearch {
 
   /// For objects before that go on in none, and for objects after in which none goes on.
   void addByPlaces() {
-    const auto has_places = [](const ObjectMembers* object) { return !object->places.empty(); };
     const std::vector<char> has_seeds_of_before = has_predecessor_;
     std::vector<char> is_orphan;
     for (const auto& successors : successors_) is_orphan.push_back(successors.empty() ? 1 : 0);
-    if (std::none_of(before_.begin(), before_.end(), has_places)) return;
+    const bool is_all_known = std::count(is_orphan.begin(), is_orphan.end(), 1) == 0 &&
+                              std::count(has_seeds_of_before.begin(), has_seeds_of_before.end(), 0) == 0;
+    const auto has_places = [](const ObjectMembers* object) { return !object->places.empty(); };
+    if (is_all_known || std::none_of(before_.begin(), before_.end(), has_places)) return;
     const Shared shared = sharedBySeedOrPlace(before_, objects_of_, after_);
     for (std::uint32_t b = 0; b < before_.size(); ++b)
       for (const auto& [a, count, is_by_place] : shared[b])
