@@ -4,8 +4,7 @@
 
 #include <algorithm>
 #include <array>
-#include <iterator>
-#include <limits>
+#include <cassert>
 #include <string>
 #include <utility>
 
@@ -19,31 +18,34 @@ namespace {
 /// One run over the tiles. A stage computes the tiles of which an input changed, and hands on those whose output did.
 class Run {
  public:
-  Run(const PerceptionParams& params, TileOutputs& outputs, const RunOptions& options)
-      : params_(params), out_(outputs), options_(options) {}
+  Run(const PerceptionParams& params, TileOutputs& outputs, const RunOptions& options, Axis axis)
+      : params_(params), out_(outputs), options_(options), axis_(axis), front_(axis) {}
 
   void toFeatures(TileSegments segments) {
-    toGround(std::move(segments));
+    toGround({std::move(segments)});
     update(
         Stage::Features, out_.features, [this](const StageTiles& changed) { return nearFeatures(changed); },
         [this](const TileKey& key) { return inputs_.featuresOf(key); });
   }
-  void toContacts(TileSegments segments, const TileLabeller& labeller, const SceneParams& params) {
+  void toContacts(PointBand band, const TileLabeller& labeller, const SceneParams& params) {
     widths_ = borderWidths(params_, params.labelling);
-    toGround(std::move(segments));
+    toGround(std::move(band));
     label(labeller, params.labelling);          // features to primitive labels, by the CRF (paper 3.1)
     summarise();                                // what the scene reads of points and cluxels
     if (options_.store != nullptr) findEven();  // what ways read of points and ground
     joinComponents(params.component);           // intersecting cluxels of one label to components
     findContacts(params);                       // components that are near each other
+    if (!front_.isAtEnd()) dropBefore(front_.firstRead());
   }
+  bool isDone() const { return front_.isAtEnd(); }
   const TileSet& changed() const { return all_changed_; }
 
  private:
-  void toGround(TileSegments segments) {
-    thin(std::move(segments));  // bounds the points where scans pile up
-    cluster();                  // points to cluxels (paper 3.1)
-    findGround();               // lowest layers of cell stacks to a surface
+  void toGround(PointBand band) {
+    front_.moveTo(band.end);
+    thin(std::move(band.segments));  // bounds the points where scans pile up
+    cluster();                       // points to cluxels (paper 3.1)
+    findGround();                    // lowest layers of cell stacks to a surface
   }
 
   void thin(TileSegments segments) {
@@ -53,7 +55,8 @@ class Run {
       if (!options_.anew.contains(key)) grown.insert(key);
     }
     inputs_.readOwn(grown);  // before the points change on which other outputs rest
-    forget(options_.anew);
+    const TileSet anew = front_.due(Stage::Points, options_.anew);
+    forget(anew);
     TileSet of_both;
     if (options_.donor != nullptr) {
       const TileSet own = options_.store->tiles();
@@ -73,11 +76,12 @@ class Run {
         });
     tiles_.all = options_.store != nullptr ? options_.store->tiles() : keysOf(out_.points);
     if (options_.compute_anew)
-      for (const TileKey& key : here(options_.anew)) changed_.note(Stage::Points, key, kOtherEverywhere);
+      for (const TileKey& key : here(anew)) changed_.note(Stage::Points, key, kOtherEverywhere);
     tiles_.forgotten = commonOf(changed_.of(Stage::Points), options_.anew);
     differing_.fill(without(of_both, tiles_.forgotten));  // not computed, so not compared either
-    inputs_.read(around(
-        around(without(changed_.of(Stage::Points), tiles_.lent))));  // most of what is needed, in one pass over scans
+    // Most of what is needed, in one pass over scans.
+    const TileSet changed = front_.due(Stage::Points, without(changed_.of(Stage::Points), tiles_.lent));
+    inputs_.read(front_.due(Stage::Points, around(around(changed))));
   }
 
   /// Stored outputs of these tiles rest on points that are not there any more: stages do not read them.
@@ -107,27 +111,29 @@ class Run {
     return here(unionOf(changed.readersOf(Stage::Cluxels), changed.readersOf(Stage::Ground)));
   }
 
-  /// Features and labels, in waves along x: rows of features take more memory than all else, and only the labels of
+  /// Features and labels, in waves of rows: rows of features take more memory than all else, and only the labels of
   /// the tile and of its ring read them.
   void label(const TileLabeller& labeller, const LabellingParams& params) {
     const TileSet lent = without(tiles_.lent, nearFeatures(differing_));
-    const std::vector<TileKey> features = completed(without(nearFeatures(changed_), lent));
-    const std::vector<TileKey> candidates = completed(around(unionOf({features.begin(), features.end()}, lent)));
+    const std::vector<TileKey> features = completed(Stage::Features, without(nearFeatures(changed_), lent));
+    near_labels_ = unionOf(std::move(near_labels_), around(unionOf({features.begin(), features.end()}, lent)));
+    const std::vector<TileKey> candidates = completed(Stage::Labels, near_labels_);
     inputs_.read(around({features.begin(), features.end()}));  // most of what is needed, at once
     eraseEmptied(Stage::Features, out_.features), eraseEmptied(Stage::Labels, out_.labels);
     take(Stage::Features, lent);
     std::size_t done = 0, seen = 0;
     while (done < features.size() || seen < candidates.size()) {
       const std::size_t first = done;
-      while (done < features.size() && (done < first + kAhead || features[done].x == features[done - 1].x)) ++done;
+      while (done < features.size() &&
+             (done < first + kAhead || front_.rowOf(features[done]) == front_.rowOf(features[done - 1])))
+        ++done;
       compute(Stage::Features, out_.features, features, first, done,
               [this](const TileKey& key) { return inputs_.featuresOf(key); });
-      // Tiles up to this column have their features.
-      const std::int32_t column =
-          done < features.size() ? features[done].x - 1 : std::numeric_limits<std::int32_t>::max();
+      // Tiles before this row have all features that their labels read.
+      const std::int64_t row = done < features.size() ? front_.rowOf(features[done]) - 1 : front_.endOf(Stage::Labels);
       std::vector<TileKey> dirty;
       TileSet taken;
-      for (; seen < candidates.size() && candidates[seen].x < column; ++seen) {
+      for (; seen < candidates.size() && front_.rowOf(candidates[seen]) < row; ++seen) {
         const TileKey& key = candidates[seen];
         if (tiles_.lent.contains(key) && !differing_.readersOf(Stage::Features).contains(key))
           taken.insert(key);
@@ -137,9 +143,10 @@ class Run {
       take(Stage::Labels, taken);
       compute(Stage::Labels, out_.labels, dirty, 0, dirty.size(),
               [&](const TileKey& key) { return labeller.label(ringIn(out_.features, key), params); });
-      if (options_.store != nullptr) inputs_.dropRowsBefore(column - 1);
+      if (options_.store != nullptr) inputs_.dropRowsBefore(row - 1, axis_);
     }
-    if (options_.store != nullptr) inputs_.dropVolumes();
+    // Rows that were added for labels two rows back are added again, together with further ones of their tile.
+    if (options_.store != nullptr) inputs_.dropVolumesBefore(front_.firstRead(), axis_);
   }
 
   void summarise() {
@@ -183,23 +190,28 @@ class Run {
   }
 
   TileSet around(const TileSet& changed) const { return tiles_.around(changed); }
+  /// Gives up outputs that no later stage reads.
+  void dropBefore(std::int64_t row) {
+    const auto drop = [&](auto& tiles) {
+      std::erase_if(tiles, [&](const auto& entry) { return front_.rowOf(entry.first) < row; });
+    };
+    drop(out_.points), drop(out_.cluxels), drop(out_.ground), drop(out_.features), drop(out_.labels);
+    drop(out_.summaries), drop(out_.even), drop(out_.components), drop(out_.contacts);
+  }
+
   /// Those with points.
   TileSet here(const TileSet& tiles) const { return commonOf(tiles, tiles_.all); }
 
-  /// The tiles that a stage computes when its inputs changed in `dirty`, ascending.
-  std::vector<TileKey> completed(TileSet dirty) const {
-    dirty.insert(tiles_.forgotten.begin(), tiles_.forgotten.end());
-    std::vector<TileKey> keys;
-    std::set_difference(dirty.begin(), dirty.end(), tiles_.emptied.begin(), tiles_.emptied.end(),
-                        std::back_inserter(keys));
-    return keys;
+  /// Of the tiles that a stage computes when its inputs changed in `dirty` those that are due, in the order of rows.
+  std::vector<TileKey> completed(Stage stage, const TileSet& dirty) const {
+    return front_.inRows(front_.due(stage, without(unionOf(dirty, tiles_.forgotten), tiles_.emptied)));
   }
 
   /// Brings one stage up to date. `near`: the tiles that read an output that is among the changed ones.
   template <typename Tile, typename Near, typename Compute>
   void update(Stage stage, std::map<TileKey, Tile>& tiles, const Near& near, const Compute& compute_tile) {
     const TileSet lent = without(tiles_.lent, near(differing_));
-    const std::vector<TileKey> keys = completed(without(near(changed_), lent));
+    const std::vector<TileKey> keys = completed(stage, without(near(changed_), lent));
     eraseEmptied(stage, tiles);
     take(stage, lent);
     compute(stage, tiles, keys, 0, keys.size(), compute_tile);
@@ -237,7 +249,7 @@ class Run {
 
   template <typename Tile>
   void eraseEmptied(Stage stage, std::map<TileKey, Tile>& tiles) {
-    for (const TileKey& key : tiles_.emptied) {
+    for (const TileKey& key : front_.due(stage, tiles_.emptied)) {
       tiles.erase(key);
       note(stage, key, kOtherEverywhere);
       if (options_.store != nullptr) options_.store->erase(stage, key);
@@ -281,19 +293,30 @@ class Run {
   const PerceptionParams& params_;
   TileOutputs& out_;
   const RunOptions& options_;
+  Axis axis_;
+  StageFront front_;
   BorderWidths widths_;
   RunTiles tiles_;
   StageInputs inputs_{params_, widths_, out_, options_, tiles_};
-  TileSet all_changed_;
+  TileSet all_changed_, near_labels_;
   StageTiles changed_, differing_;  ///< against the store, and against the donor
 };
 
 }  // namespace
 
+TileSet runStages(PointBands& bands, const TileLabeller& labeller, const SceneParams& params, TileOutputs& outputs,
+                  const RunOptions& options) {
+  assert(options.store != nullptr && options.donor == nullptr);
+  Run run(labeller.model().perception, outputs, options, bands.axis());
+  do run.toContacts(bands.next(), labeller, params);
+  while (!run.isDone());
+  return run.changed();
+}
+
 TileSet runStages(TileSegments segments, const TileLabeller& labeller, const SceneParams& params, TileOutputs& outputs,
                   const RunOptions& options) {
-  Run run(labeller.model().perception, outputs, options);
-  run.toContacts(std::move(segments), labeller, params);
+  Run run(labeller.model().perception, outputs, options, longerAxis(keysOf(segments)));
+  run.toContacts({std::move(segments)}, labeller, params);
   return run.changed();
 }
 
@@ -301,7 +324,7 @@ TileOutputs perceive(std::span<const scan::Scan> scans, const PerceptionParams& 
   checkRanges(params);
   TileOutputs outputs;
   const RunOptions options{.threads = threads};
-  Run(params, outputs, options).toFeatures(segmentsOf(scans));
+  Run(params, outputs, options, Axis::X).toFeatures(segmentsOf(scans));
   return outputs;
 }
 

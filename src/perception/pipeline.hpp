@@ -5,23 +5,15 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <map>
 #include <span>
 #include <string_view>
-#include <vector>
 
 #include "perception/crf/labelling.hpp"
+#include "perception/point_bands.hpp"
 #include "perception/segments/scene_assembly.hpp"
 #include "perception/tile_borders.hpp"
 
 namespace cluxel::perception {
-
-/// The stages that write one output per tile, in the order in which they run.
-enum class Stage : std::uint8_t { Points, Cluxels, Ground, Features, Labels, Summaries, Even, Components, Contacts };
-inline constexpr std::size_t kStageCount = 9;
-
-/// "points", "cluxels", "ground", "features", "labels", "summaries", "even", "components", "contacts".
-std::string_view nameOf(Stage stage);
 
 /// Settings of the stages after the features. (Settings up to the features belong to the model.)
 struct SceneParams {
@@ -44,9 +36,6 @@ inline OutputChange changeOf(Stage stage, std::string_view before, std::string_v
   if (stage != Stage::Ground) change.is_read[kRingCentre] = true;  // later stages read all of the tile itself
   return change;
 }
-
-/// Points of scans by tile, the input of the first stage.
-using TileSegments = std::map<TileKey, std::vector<ScanSegment>>;
 
 /// Cuts scans into tiles. Errors and cost as for splitScan().
 TileSegments segmentsOf(std::span<const scan::Scan> scans);
@@ -102,6 +91,9 @@ struct RunOptions {
 /// Runs all stages: brings `outputs` and the store up to date after segments came in or went. `outputs` then holds what
 /// was read or computed, without volumes and rows. Returns the tiles of which an output of some stage changed.
 TileSet runStages(TileSegments segments, const TileLabeller& labeller, const SceneParams& params, TileOutputs& outputs,
+                  const RunOptions& run);
+/// The same, band by band. Expects a store, and no donor. `outputs` then holds what belongs to the last rows.
+TileSet runStages(PointBands& bands, const TileLabeller& labeller, const SceneParams& params, TileOutputs& outputs,
                   const RunOptions& run);
 
 /// The same up to the features, in memory. The scans may come in any order.

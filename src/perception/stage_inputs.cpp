@@ -100,13 +100,14 @@ void StageInputs::addRows(const TileSet& keys) {
   for (const auto& [tile, places] : lacking) rows_near_[tile->key] = places;
 }
 
-void StageInputs::dropRowsBefore(std::int32_t column) {
+void StageInputs::dropRowsBefore(std::int64_t row, Axis axis) {
   for (auto& [key, tile] : out_.features)
-    if (key.x < column) tile.dropRows();
+    if (rowOf(key, axis) < row) tile.dropRows();
 }
 
-void StageInputs::dropVolumes() {
-  for (auto& [key, tile] : out_.cluxels) perception::dropVolumes(tile);
+void StageInputs::dropVolumesBefore(std::int64_t row, Axis axis) {
+  for (auto& [key, tile] : out_.cluxels)
+    if (rowOf(key, axis) < row) perception::dropVolumes(tile);
 }
 
 }  // namespace cluxel::perception

@@ -33,6 +33,10 @@ class StageInputs {
     read(tiles_.around(keys));
   }
   void readFor(const std::map<TileKey, TilePoints>& /*stage*/, const TileSet& /*keys*/) {}
+  void readFor(const std::map<TileKey, CluxelTile>& /*stage*/, const TileSet& keys) {
+    for (const TileKey& key : keys) volumes_near_.erase(key);  // all its volumes are about to be computed
+    read(tiles_.around(keys));
+  }
   void readFor(const std::map<TileKey, FeatureTile>& /*stage*/, const TileSet& keys) {
     for (const TileKey& key : keys) rows_near_.erase(key);  // all its rows are about to be computed
     addVolumes(around(keys));
@@ -42,9 +46,10 @@ class StageInputs {
   /// Cluxels and their 2-ring to HOR and other features (paper 3.1).
   FeatureTile featuresOf(const TileKey& key) const;
 
-  /// Rows are not stored; later runs compute them again where they need them. So with volumes.
-  void dropRowsBefore(std::int32_t column);
-  void dropVolumes();
+  /// Rows of features are not stored; later runs compute them again where they need them. So with volumes. `row`: the
+  /// first row of tiles that keeps them.
+  void dropRowsBefore(std::int64_t row, Axis axis);
+  void dropVolumesBefore(std::int64_t row, Axis axis);
 
  private:
   /// For each tile the ring places near which something is there, or needed: one bit for each. The centre: everywhere.

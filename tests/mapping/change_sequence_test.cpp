@@ -7,10 +7,10 @@
 #include <random>
 #include <set>
 
-#include "mapping/build/map_update.hpp"
 #include "mapping/build/operator_statements.hpp"
 #include "mapping/change/map_change.hpp"
 #include "mapping/change/map_merge.hpp"
+#include "mapping/change/map_update.hpp"
 #include "mapping/change/statement_change.hpp"
 #include "mapping/mixed_scans.hpp"
 #include "mapping/small_campus.hpp"

@@ -2,10 +2,10 @@
 // A build, a watch or a compaction that is killed at any moment leaves an exact map; the same command finishes it.
 #include "base/file_bytes.hpp"
 #include "cluxel/error.hpp"
-#include "mapping/build/map_update.hpp"
 #include "mapping/build/work_file.hpp"
 #include "mapping/change/folder_watch.hpp"
 #include "mapping/change/map_compaction.hpp"
+#include "mapping/change/map_update.hpp"
 #include "mapping/change/statement_change.hpp"
 #include "mapping/free_space.hpp"
 #include "mapping/killed_change.hpp"

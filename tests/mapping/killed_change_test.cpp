@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
-#include "mapping/build/map_update.hpp"
-#include "mapping/build/rdf_loading.hpp"
 #include "mapping/change/map_merge.hpp"
+#include "mapping/change/map_update.hpp"
+#include "mapping/change/rdf_loading.hpp"
 #include "mapping/change/statement_change.hpp"
 #include "mapping/facts/map_history.hpp"
 #include "mapping/statements/statement.hpp"

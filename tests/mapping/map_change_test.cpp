@@ -12,7 +12,7 @@
 
 #include "base/file_bytes.hpp"
 #include "cluxel/error.hpp"
-#include "mapping/build/map_update.hpp"
+#include "mapping/change/map_update.hpp"
 #include "mapping/facts/map_history.hpp"
 #include "mapping/map_change_fixture.hpp"
 #include "mapping/presence/stored_presence.hpp"

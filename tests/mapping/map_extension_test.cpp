@@ -4,9 +4,9 @@
 
 #include "base/file_bytes.hpp"
 #include "cluxel/error.hpp"
-#include "mapping/build/map_update.hpp"
 #include "mapping/change/map_change.hpp"
 #include "mapping/change/map_compaction.hpp"
+#include "mapping/change/map_update.hpp"
 #include "mapping/small_campus.hpp"
 #include "rdf/map_iris.hpp"
 

@@ -7,9 +7,9 @@
 
 #include "base/file_bytes.hpp"
 #include "cluxel/error.hpp"
-#include "mapping/build/map_update.hpp"
 #include "mapping/build/operator_statements.hpp"
 #include "mapping/change/map_change.hpp"
+#include "mapping/change/map_update.hpp"
 #include "mapping/small_campus.hpp"
 #include "sparql/query_engine.hpp"
 

@@ -11,9 +11,9 @@
 #include <random>
 #include <set>
 
-#include "mapping/build/map_update.hpp"
 #include "mapping/change/map_change.hpp"
 #include "mapping/change/map_merge.hpp"
+#include "mapping/change/map_update.hpp"
 #include "mapping/change/statement_change.hpp"
 #include "mapping/layers/semantic_state.hpp"
 #include "mapping/map_tables.hpp"

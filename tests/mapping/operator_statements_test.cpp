@@ -4,7 +4,7 @@
 
 #include "cluxel/error.hpp"
 #include "mapping/asking_rules.hpp"
-#include "mapping/build/map_update.hpp"
+#include "mapping/change/map_update.hpp"
 #include "sparql/query_engine.hpp"
 
 namespace cluxel::mapping {

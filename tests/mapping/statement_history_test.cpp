@@ -6,9 +6,9 @@
 #include <gtest/gtest.h>
 
 #include "cluxel/error.hpp"
-#include "mapping/build/map_update.hpp"
 #include "mapping/build/operator_statements.hpp"
 #include "mapping/change/map_merge.hpp"
+#include "mapping/change/map_update.hpp"
 #include "mapping/change/statement_change.hpp"
 #include "mapping/small_campus.hpp"
 #include "rdf/map_iris.hpp"

@@ -9,11 +9,11 @@
 #include <set>
 
 #include "cluxel/error.hpp"
-#include "mapping/build/map_update.hpp"
 #include "mapping/build/operator_statements.hpp"
 #include "mapping/change/map_change.hpp"
 #include "mapping/change/map_merge.hpp"
 #include "mapping/change/map_things.hpp"
+#include "mapping/change/map_update.hpp"
 #include "mapping/change/statement_change.hpp"
 #include "mapping/facts/object_geometry.hpp"
 #include "mapping/small_campus.hpp"

@@ -7,7 +7,7 @@
 #include <limits>
 #include <map>
 
-#include "mapping/build/map_update.hpp"
+#include "mapping/change/map_update.hpp"
 #include "mapping/change/statement_change.hpp"
 #include "mapping/street_changes.hpp"
 #include "rdf/map_iris.hpp"

@@ -5,7 +5,7 @@
 #include "app/command.hpp"
 #include "base/file_pieces.hpp"
 #include "cluxel/error.hpp"
-#include "mapping/build/rdf_loading.hpp"
+#include "mapping/change/rdf_loading.hpp"
 #include "rdf/file/environment.hpp"
 #include "rdf/file/map_check.hpp"
 #include "rdf/io/rdf_io.hpp"

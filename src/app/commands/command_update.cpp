@@ -4,7 +4,7 @@
 #include "app/named_sources.hpp"
 #include "app/shared_options.hpp"
 #include "base/file_bytes.hpp"
-#include "mapping/build/map_update.hpp"
+#include "mapping/change/map_update.hpp"
 #include "rdf/io/rdf_io.hpp"
 #include "sparql/syntax/parser.hpp"
 

@@ -68,12 +68,12 @@ class MapBuild {
         params_(params),
         sink_(sink),
         state_(work.found()),
-        stages_(parsed.model, parsed.inputs.params, Keep::Summaries) {}
+        stages_(parsed.model, parsed.inputs.params, Keep::Summaries, params.stage_points) {}
 
   BuildReport run() {
     goOn();
     for (std::size_t next = 0; next < scans_.size();) {
-      if (next > 0) work_.reopen();
+      if (next > 0) work_.reopen(), returnFreeMemory();
       next = addBatch(next);
     }
     for (const std::string& note : reading_notes_.totals()) sink_.note(note);
@@ -106,8 +106,8 @@ class MapBuild {
     transaction.useThreads(params_.threads);
     requireOwn(transaction);
     PointChanges changes;
-    std::uint64_t batch_points = 0, part_points = 0;
-    std::size_t next = first, batch_scans = 0, part_scans = 0;
+    std::uint64_t batch_points = 0;
+    std::size_t next = first, batch_scans = 0;
     for (; next < scans_.size() && !isFull(batch_points, batch_scans, scans_.size() - next, params_.batch_points);
          ++next) {
       ReadScan given = reader_.take(next);
@@ -115,15 +115,10 @@ class MapBuild {
       const std::uint64_t points = given.scan.cloud.point_count;
       auto segments = storeScan(transaction, std::move(given.scan));
       report_.scans_already_there += segments.empty() ? 1 : 0;
-      const std::uint64_t added = segments.empty() ? 0 : points;
-      batch_points += added, part_points += added;
-      batch_scans += segments.empty() ? 0 : 1, part_scans += segments.empty() ? 0 : 1;
-      changes.add(std::move(segments));
+      batch_points += segments.empty() ? 0 : points;
+      batch_scans += segments.empty() ? 0 : 1;
+      changes.add(std::move(segments), params_.stage_points);
       clock.progress("scans", next + 1, scans_.size());
-      if (!isFull(part_points, part_scans, scans_.size() - next - 1, params_.stage_points)) continue;
-      stages_.update(transaction, std::exchange(changes, {}), params_.threads, clock);
-      stages_.dropAll();
-      part_points = 0, part_scans = 0;
     }
     if (batch_points > 0 || next == scans_.size())
       commitBatch(transaction, std::move(changes), next == scans_.size(), started_s, clock);

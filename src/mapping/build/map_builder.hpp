@@ -18,7 +18,7 @@ namespace cluxel::mapping {
 struct BuildParams {
   unsigned threads = 1;
   std::uint64_t batch_points = 6'000'000;     ///< a batch of scans is committed when it holds this many points
-  std::uint64_t stage_points = kStagePoints;  ///< of a batch, as many go through the stages at once
+  std::uint64_t stage_points = kStagePoints;  ///< a batch with more goes through the stages in bands
   bool force = false;                         ///< replace a finished map
   bool refine_poses = false;  ///< register the scans first (registerPoses()); otherwise poses that do not fit are noted
   bool drop_statements = false;       ///< with `force`: drop the operator's statements of the old map

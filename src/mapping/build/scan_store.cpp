@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "base/parallel.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/build/packed_points.hpp"
 #include "mapping/build/scan_plausibility.hpp"
@@ -128,6 +129,23 @@ bool mayTouch(const Cloud& cloud, const TileSet& tiles) {
   });
 }
 
+/// The packed points of a scan. They stay until the next write.
+std::string_view requiredPoints(const rdf::ReadTransaction& transaction, const scan::ScanId& id) {
+  if (const auto block = transaction.block(tables::kScanPoints, tables::keyOf(id))) return *block;
+  throw Error(ErrorKind::StoreUnavailable, "cloud " + id.hex() + " has no points in the map; build it anew");
+}
+
+scan::Scan scanOf(const Cloud& cloud, scan::ScanPoints points) {
+  scan::Scan scan;
+  scan.points = std::move(points);
+  scan.time_s = cloud.time_s;
+  scan.T_map_sensor = cloud.T_map_sensor;
+  scan.has_pose = cloud.has_pose;
+  scan.source = cloud.source;
+  scan.id = cloud.id;
+  return scan;
+}
+
 /// The years that xsd:dateTime writes with four digits.
 void requireTime(const scan::Scan& scan) {
   constexpr double kFirst_s = -62135596800.0, kEnd_s = 253402300799.0;
@@ -149,12 +167,26 @@ std::vector<perception::SceneView> viewsOf(const std::vector<Cloud>& clouds) {
 TileSet PointChanges::tiles() const {
   TileSet all = anew;
   for (const auto& [tile, segments] : added) all.insert(tile);
+  for (const auto& [tile, points] : stored_points) all.insert(tile);
   if (copied != nullptr) all.merge(storedTiles(*copied));
   return all;
 }
 
-void PointChanges::add(std::map<perception::TileKey, perception::ScanSegment> segments) {
+void PointChanges::add(ScanSegments segments, std::uint64_t part_points) {
+  for (const auto& [tile, segment] : segments) points_ += segment.size();
+  if (points_ > part_points + part_points / 2) {
+    for (const auto& [tile, of_tile] : std::exchange(added, {}))
+      for (const perception::ScanSegment& segment : of_tile) note(segment);
+    for (const auto& [tile, segment] : segments) note(segment);
+    return;
+  }
   for (auto& [tile, segment] : segments) added[tile].push_back(std::move(segment));
+}
+
+void PointChanges::note(const perception::ScanSegment& segment) {
+  const auto [scan, is_new] = stored.try_emplace(segment.scan, segment.key);
+  scan->second = {std::min(scan->second.x, segment.key.x), std::min(scan->second.y, segment.key.y)};
+  stored_points[segment.key] += segment.size();
 }
 
 TileSet storedTiles(const rdf::ReadTransaction& transaction) {
@@ -179,15 +211,13 @@ PreparedScan prepareScan(const scan::Scan& scan) {
   return prepared;
 }
 
-std::map<perception::TileKey, perception::ScanSegment> storeScan(rdf::WriteTransaction& transaction,
-                                                                 const scan::Scan& scan) {
+ScanSegments storeScan(rdf::WriteTransaction& transaction, const scan::Scan& scan) {
   requireTime(scan);
   if (isThere(transaction, unmeasuredCloud(scan))) return {};
   return storeScan(transaction, prepareScan(scan));
 }
 
-std::map<perception::TileKey, perception::ScanSegment> storeScan(rdf::WriteTransaction& transaction,
-                                                                 PreparedScan scan) {
+ScanSegments storeScan(rdf::WriteTransaction& transaction, PreparedScan scan) {
   if (isThere(transaction, scan.cloud)) return {};
   const std::string key = tables::keyOf(scan.cloud.id);
   transaction.putBlock(tables::kScanPoints, key, scan.packed_points);
@@ -227,16 +257,23 @@ perception::TileSegments storedSegments(const rdf::ReadTransaction& transaction,
   return segments;
 }
 
+std::vector<ScanSegments> segmentsOfScans(const rdf::ReadTransaction& transaction, std::span<const scan::ScanId> scans,
+                                          unsigned threads) {
+  std::vector<Cloud> clouds;
+  std::vector<std::string_view> blocks;
+  for (const scan::ScanId& id : scans) {
+    clouds.push_back(requiredCloud(transaction, id));
+    blocks.push_back(requiredPoints(transaction, id));
+  }
+  std::vector<ScanSegments> segments(scans.size());
+  parallelFor(scans.size(), threads, [&](std::size_t i) {
+    segments[i] = perception::splitScan(scanOf(clouds[i], unpackedPoints(blocks[i], clouds[i].point_count)));
+  });
+  return segments;
+}
+
 scan::Scan storedScan(const rdf::ReadTransaction& transaction, const scan::ScanId& id) {
-  const Cloud cloud = requiredCloud(transaction, id);
-  scan::Scan scan;
-  scan.points = storedPoints(transaction, id);
-  scan.time_s = cloud.time_s;
-  scan.T_map_sensor = cloud.T_map_sensor;
-  scan.has_pose = cloud.has_pose;
-  scan.source = cloud.source;
-  scan.id = id;
-  return scan;
+  return scanOf(requiredCloud(transaction, id), storedPoints(transaction, id));
 }
 
 std::vector<Cloud> storedClouds(const rdf::ReadTransaction& transaction) {
@@ -259,11 +296,9 @@ Cloud requiredCloud(const rdf::ReadTransaction& transaction, const scan::ScanId&
 }
 
 scan::ScanPoints storedPoints(const rdf::ReadTransaction& transaction, const scan::ScanId& id) {
-  const auto block = transaction.block(tables::kScanPoints, tables::keyOf(id));
-  if (!block)
-    throw Error(ErrorKind::StoreUnavailable, "cloud " + id.hex() + " has no points in the map; build it anew");
+  const std::string_view packed = requiredPoints(transaction, id);
   const auto cloud = storedCloud(transaction, id);
-  return unpackedPoints(*block, cloud ? cloud->point_count : 0);
+  return unpackedPoints(packed, cloud ? cloud->point_count : 0);
 }
 
 }  // namespace cluxel::mapping

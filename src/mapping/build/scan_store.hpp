@@ -4,6 +4,7 @@
 
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -15,18 +16,30 @@
 namespace cluxel::mapping {
 
 using TileSet = perception::TileSet;
+using ScanSegments = std::map<perception::TileKey, perception::ScanSegment>;
 
 /// What changed of the points of tiles, for TileStages::update().
 struct PointChanges {
   perception::TileSegments added;
   TileSet anew;  ///< tiles that lost points or got them at other places
+  /// Scans that were added, too, whose points are read again when the stages come to them: by id the lowest x and y of
+  /// their tiles. They are stored.
+  std::map<scan::ScanId, perception::TileKey> stored;
+  std::map<perception::TileKey, std::uint64_t> stored_points;  ///< how many points these have in each tile
   /// Another map with the same model and settings. All its scans were copied to this map, and its tiles come with them.
   /// Tiles that both maps have are in `anew`.
   const rdf::ReadTransaction* copied = nullptr;
   bool is_lender = false;  ///< what it decided may be taken, too: it has the same inputs (canLendDecisions())
 
   TileSet tiles() const;
-  void add(std::map<perception::TileKey, perception::ScanSegment> segments);
+  bool hasAdded() const { return !added.empty() || !stored.empty(); }
+  /// Adds what a stored scan has. From one and a half times `part_points` points on, none stay in memory.
+  void add(ScanSegments segments, std::uint64_t part_points);
+
+ private:
+  void note(const perception::ScanSegment& segment);
+
+  std::uint64_t points_ = 0;
 };
 
 /// All of a scan that is stored or goes through the stages. A function of the scan alone, so that scans can be prepared
@@ -34,7 +47,7 @@ struct PointChanges {
 struct PreparedScan {
   Cloud cloud;
   std::string packed_points;
-  std::map<perception::TileKey, perception::ScanSegment> segments;
+  ScanSegments segments;
 };
 
 /// Throws InputError for a scan that cannot be of a place (requirePlausible()), or whose time has no date.
@@ -43,9 +56,8 @@ PreparedScan prepareScan(const scan::Scan& scan);
 /// Stores a scan; returns its points by tile. A scan that was measured alike and has the same pose is the same cloud:
 /// nothing is stored but the later of the two times (a time is later than none), and nothing is returned. The same scan
 /// with another pose, or with a pose where there was none, is an InputError.
-std::map<perception::TileKey, perception::ScanSegment> storeScan(rdf::WriteTransaction& transaction,
-                                                                 const scan::Scan& scan);
-std::map<perception::TileKey, perception::ScanSegment> storeScan(rdf::WriteTransaction& transaction, PreparedScan scan);
+ScanSegments storeScan(rdf::WriteTransaction& transaction, const scan::Scan& scan);
+ScanSegments storeScan(rdf::WriteTransaction& transaction, PreparedScan scan);
 
 /// Copies a scan of another map as it is stored there. False, and the later of both times, when the scan is here.
 /// Errors as for storeScan().
@@ -56,6 +68,10 @@ TileSet removeScan(rdf::WriteTransaction& transaction, const scan::ScanId& id);
 
 /// All points of the tiles, from the stored scans. A tile in which no scan has points has no segments.
 perception::TileSegments storedSegments(const rdf::ReadTransaction& transaction, const TileSet& tiles);
+
+/// The points of these scans by tile, in their order, read on the calling thread and unpacked on up to `threads`.
+std::vector<ScanSegments> segmentsOfScans(const rdf::ReadTransaction& transaction, std::span<const scan::ScanId> scans,
+                                          unsigned threads);
 
 /// A stored scan as it was given. Throws Error (NotFound) when there is none.
 scan::Scan storedScan(const rdf::ReadTransaction& transaction, const scan::ScanId& id);

@@ -6,6 +6,7 @@
 
 #include "base/free_memory.hpp"
 #include "mapping/build/recent_scans.hpp"
+#include "mapping/build/scan_bands.hpp"
 #include "mapping/build/way_tiles.hpp"
 #include "mapping/damaged_map.hpp"
 #include "mapping/map_tables.hpp"
@@ -213,18 +214,24 @@ TileSet TileStages::run(rdf::WriteTransaction& transaction, PointChanges changes
     donor.emplace(*changes.copied, scans);
     changes_.has_copied_map = true;
   }
-  if (donor || !changes.added.empty() || !changes.anew.empty())
+  if (donor || changes.hasAdded() || !changes.anew.empty())
     changes_.lender = changes.is_lender && changes_.tiles.empty() ? changes.copied : nullptr;
   // The scans are stored already: all points of these tiles are read, also those that were added.
   for (auto& [tile, segments] : storedSegments(transaction, changes.anew))
     changes.added.insert_or_assign(tile, std::move(segments));
-  const TileSet changed = runStages(std::move(changes.added), labeller_, params_, outputs_,
-                                    {.threads = threads,
-                                     .store = &store,
-                                     .observer = &progress,
-                                     .anew = std::move(changes.anew),
-                                     .compute_anew = compute_anew,
-                                     .donor = donor ? &*donor : nullptr});
+  const perception::RunOptions options{.threads = threads,
+                                       .store = &store,
+                                       .observer = &progress,
+                                       .anew = changes.anew,
+                                       .compute_anew = compute_anew,
+                                       .donor = donor ? &*donor : nullptr};
+  TileSet changed;
+  if (changes.stored.empty()) {
+    changed = runStages(std::move(changes.added), labeller_, params_, outputs_, options);
+  } else {
+    ScanBands bands(transaction, std::move(changes), max_points_ / 2, threads);
+    changed = runStages(bands, labeller_, params_, outputs_, options);
+  }
   storeTiles(transaction, store.tiles());
   changed_even_.insert(store.changedEven().begin(), store.changedEven().end());
   even_ = std::exchange(outputs_.even, {});  // what is missing is read

@@ -34,8 +34,15 @@ struct OutputChanges {
 /// `model` and `params` must outlive it.
 class TileStages {
  public:
-  TileStages(const perception::LabelModel& model, const MapParams& params, Keep keep = Keep::All)
-      : params_{params.labelling, params.component, params.contact, params.relation}, labeller_(model), keep_(keep) {}
+  /// What has more than `max_points` points goes through the stages in bands.
+  TileStages(const perception::LabelModel& model, const MapParams& params, Keep keep = Keep::All,
+             std::uint64_t max_points = kStagePoints)
+      : params_{params.labelling, params.component, params.contact, params.relation},
+        labeller_(model),
+        keep_(keep),
+        max_points_(max_points) {}
+
+  std::uint64_t maxPoints() const { return max_points_; }
 
   /// Brings every stage but ways up to date after scans were stored or removed. Returns the tiles of which an output
   /// changed.
@@ -107,6 +114,7 @@ class TileStages {
   perception::SceneParams params_;
   perception::TileLabeller labeller_;
   Keep keep_;
+  std::uint64_t max_points_;
   perception::TileOutputs outputs_;
   OutputChanges changes_;
   /// Tiles of which the even ground changed, came or went since the stages of ways were brought up to date.

@@ -20,8 +20,8 @@
 #include "mapping/facts/map_history.hpp"
 #include "mapping/layers/semantic_state.hpp"
 #include "mapping/map_state.hpp"
-#include "mapping/map_strips.hpp"
 #include "mapping/map_tables.hpp"
+#include "mapping/strips/map_strips.hpp"
 #include "mapping/window/former_objects.hpp"
 #include "rules/decide/local_reach.hpp"
 
@@ -160,7 +160,7 @@ rdf::WriteTransaction MapEditor::begin() {
 }
 
 void MapEditor::update(rdf::WriteTransaction& transaction, PointChanges changes, ProgressSink& sink) {
-  if (!stages_) stages_.emplace(parsed_.model, parsed_.inputs.params);
+  if (!stages_) stages_.emplace(parsed_.model, parsed_.inputs.params, Keep::All, params_.stage_points);
   touched_ = unionOf(std::move(touched_), changes.tiles());
   if (!std::exchange(all_tiles_, false))
     return noteChanged(stages_->update(transaction, std::move(changes), params_.threads, sink));
@@ -176,7 +176,7 @@ std::vector<TileSet> MapEditor::partsOfAll(const rdf::ReadTransaction& transacti
   const std::uint64_t part_points = std::max<std::uint64_t>(1, partSize(points, points, params_.stage_points));
   const std::uint64_t count = (points + part_points - 1) / part_points;
   // The bytes of its points tell what a tile costs.
-  return stripsOf(unionOf(TileSet(more), storedTiles(transaction)), count, [&](const TileKey& tile) {
+  return stripsOf(unionOf(TileSet(more), storedTiles(transaction)), count, [&](const perception::TileKey& tile) {
     const auto block = transaction.block(tables::kPoints, tables::keyOf(tile));
     return block ? block->size() : 0;
   });
@@ -199,7 +199,7 @@ SemanticUpdate MapEditor::decide(rdf::WriteTransaction& transaction, PointChange
 SemanticUpdate MapEditor::decideInParts(rdf::WriteTransaction& transaction, std::vector<TileSet> parts,
                                         ProgressSink& sink) {
   all_tiles_ = false;
-  stages_.emplace(parsed_.model, parsed_.inputs.params);
+  stages_.emplace(parsed_.model, parsed_.inputs.params, Keep::All, params_.stage_points);
   ObjectDifference difference;
   SemanticUpdate update;
   bool is_local = true;

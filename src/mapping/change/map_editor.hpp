@@ -27,7 +27,7 @@ struct ChangeParams {
   unsigned threads = 1;
   std::uint64_t batch_points = 6'000'000;     ///< scans are added in batches of about this many points
   bool dry_run = false;                       ///< compute what would change, and write nothing
-  std::uint64_t stage_points = kStagePoints;  ///< of a batch, as many go through the stages at once
+  std::uint64_t stage_points = kStagePoints;  ///< a batch with more goes through the stages in bands
   bool may_compact = true;                    ///< rewrite the map when the change leaves much free space
   double max_window_share = UpdateParams{}.max_window_share;  ///< this and the next as in UpdateParams
   std::uint64_t whole_cluxels = UpdateParams{}.whole_cluxels;

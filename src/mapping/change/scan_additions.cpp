@@ -23,12 +23,8 @@ void ScanAdditions::add(const scan::Scan& scan, std::size_t scans_left) {
     return;
   }
   noteAdded(*storedCloud(*transaction_, scan.id));
-  changes_.add(std::move(segments));
-  if (!editor_.params().dry_run && isFull(points_, added_.size(), scans_left, editor_.params().batch_points))
-    return finish();
-  if (!isFull(part_points_, part_scans_, scans_left, editor_.params().stage_points)) return;
-  editor_.update(*transaction_, std::exchange(changes_, {}), editor_.sink());
-  part_points_ = 0, part_scans_ = 0;
+  changes_.add(std::move(segments), editor_.params().stage_points);
+  if (!editor_.params().dry_run && isFull(points_, added_.size(), scans_left, editor_.params().batch_points)) finish();
 }
 
 void ScanAdditions::countOtherTime(const scan::Scan& scan, std::optional<double> before_s,
@@ -53,12 +49,12 @@ void ScanAdditions::noteOtherTimes() {
 
 void ScanAdditions::noteAdded(const Cloud& cloud) {
   added_.push_back(cloud);
-  points_ += cloud.point_count, part_points_ += cloud.point_count, ++part_scans_;
+  points_ += cloud.point_count;
 }
 
 void ScanAdditions::copy(const rdf::ReadTransaction& other, bool is_lender) {
   transaction();
-  if (!changes_.added.empty()) editor_.update(*transaction_, std::exchange(changes_, {}), editor_.sink());
+  if (changes_.hasAdded()) editor_.update(*transaction_, std::exchange(changes_, {}), editor_.sink());
   for (const Cloud& cloud : storedClouds(other)) {
     if (copyScan(*transaction_, other, cloud))
       noteAdded(cloud);
@@ -75,7 +71,6 @@ void ScanAdditions::copy(const rdf::ReadTransaction& other, bool is_lender) {
   std::set_intersection(own.begin(), own.end(), tiles.begin(), tiles.end(),
                         std::inserter(changes.anew, changes.anew.end()));
   editor_.update(*transaction_, std::move(changes), editor_.sink());
-  part_points_ = 0, part_scans_ = 0;
   if (is_lender || (!editor_.params().dry_run && points_ >= editor_.params().batch_points)) finish();
 }
 
@@ -92,7 +87,7 @@ void ScanAdditions::finish() {
   transaction_.reset();
   changes_ = {};
   added_.clear();
-  points_ = part_points_ = 0, part_scans_ = 0;
+  points_ = 0;
   has_other_changes_ = false;
 }
 

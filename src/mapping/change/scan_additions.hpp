@@ -37,8 +37,7 @@ class ScanAdditions {
   std::optional<rdf::WriteTransaction> transaction_;  ///< of the open batch
   PointChanges changes_;
   std::vector<Cloud> added_;
-  std::uint64_t points_ = 0, part_points_ = 0;       ///< of the batch, and since the last update of the stages
-  std::size_t part_scans_ = 0;                       ///< likewise
+  std::uint64_t points_ = 0;                         ///< of the batch
   std::size_t later_times_ = 0, earlier_times_ = 0;  ///< of known scans in the batch
   bool has_other_changes_ = false;
 };

@@ -7,7 +7,7 @@
 #include "mapping/presence/object_rows.hpp"
 #include "mapping/window/lent_decisions.hpp"
 #include "mapping/window/local_update.hpp"
-#include "mapping/window/whole_update.hpp"
+#include "mapping/strips/whole_update.hpp"
 
 namespace cluxel::mapping {
 

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/ascii.hpp"
-#include "mapping/build/map_update.hpp"
+#include "mapping/change/map_update.hpp"
 #include "serve/http/media_types.hpp"
 #include "serve/http/refusal.hpp"
 #include "serve/resources/answer_body.hpp"

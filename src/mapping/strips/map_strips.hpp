@@ -8,11 +8,18 @@
 #include <vector>
 
 #include "perception/tile.hpp"
+#include "rdf/file/environment.hpp"
 
 namespace cluxel::mapping {
 
 /// All tiles in `count` strips or fewer, of about the same weight, from one end of the area to the other.
 std::vector<perception::TileSet> stripsOf(const perception::TileSet& tiles, std::size_t count,
                                           const std::function<std::uint64_t(const perception::TileKey&)>& weight_of);
+
+/// The same of tiles whose layers are to be decided. They have some `cluxels`; a map of `whole_cluxels` could be
+/// decided at once.
+std::vector<perception::TileSet> layerStripsOf(const rdf::ReadTransaction& transaction,
+                                               const perception::TileSet& tiles, std::uint64_t cluxels,
+                                               std::uint64_t whole_cluxels);
 
 }  // namespace cluxel::mapping

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Statements go from the parser to the store one by one.
-#include "mapping/build/rdf_loading.hpp"
+#include "mapping/change/rdf_loading.hpp"
 
 #include "cluxel/error.hpp"
-#include "mapping/build/map_update.hpp"
+#include "mapping/change/map_update.hpp"
 #include "mapping/map_state.hpp"
 #include "rdf/file/map_replacement.hpp"
 #include "rdf/io/rdf_io.hpp"

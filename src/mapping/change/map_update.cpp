@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // After the update, what it changes is inferred. When statements came or went, the objects around them are decided
 // again; when rules use `ask:`, all objects.
-#include "mapping/build/map_update.hpp"
+#include "mapping/change/map_update.hpp"
 
 #include <chrono>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A map that grows by one strip after the other ends as the map of all of its tiles: each strip is decided as a change.
-#include "mapping/window/whole_update.hpp"
+#include "mapping/strips/whole_update.hpp"
 
 #include <algorithm>
 #include <set>
@@ -9,11 +9,11 @@
 #include "mapping/facts/told_ways.hpp"
 #include "mapping/layers/stored_layers.hpp"
 #include "mapping/map_state.hpp"
-#include "mapping/map_strips.hpp"
 #include "mapping/map_tables.hpp"
 #include "mapping/presence/object_rows.hpp"
 #include "mapping/splits_store.hpp"
 #include "mapping/statements/statement_facts.hpp"
+#include "mapping/strips/map_strips.hpp"
 #include "mapping/window/former_objects.hpp"
 #include "mapping/window/map_window.hpp"
 #include "rdf/vocabulary.hpp"
@@ -25,9 +25,6 @@ namespace {
 
 using perception::TileKey;
 using perception::TileSet;
-
-/// A strip is decided together with what lies beside it, which is often as large.
-constexpr std::uint64_t kStripsOfWhole = 2;
 
 void eraseAll(rdf::WriteTransaction& transaction, std::string_view table) {
   std::vector<std::string> keys;
@@ -87,12 +84,7 @@ class StripUpdate {
   const rdf::ReadTransaction& reading() const { return transaction_; }
 
   std::vector<TileSet> strips() const {
-    const std::uint64_t cluxels = std::max<std::uint64_t>(1, likelyCluxels(transaction_, former_));
-    const std::uint64_t of_strip = std::max<std::uint64_t>(1, work_.params.whole_cluxels / kStripsOfWhole);
-    return stripsOf(all_, (cluxels + of_strip - 1) / of_strip, [&](const TileKey& tile) {
-      const auto block = transaction_.block(tables::kSummaries, tables::keyOf(tile));
-      return block ? block->size() : 0;
-    });
+    return layerStripsOf(transaction_, all_, likelyCluxels(transaction_, former_), work_.params.whole_cluxels);
   }
 
   /// Nothing of the map counts any more. Layers and rows stay where they are until they are written anew, because most
@@ -164,15 +156,11 @@ bool makesWideObjectsButGround(const rules::RuleSet& rules) {
 }
 
 std::optional<SemanticUpdate> updateInStrips(const LayerWork& work) {
-  const std::optional<double> reach_m = rules::localReach(work.parsed.rules).reach_m;
   std::optional<SemanticState> former = storedSemanticState(work.transaction);
-  if (!former || !reach_m || *reach_m > perception::kTileSize_m ||
-      likelyCluxels(work.transaction, *former) <= work.params.whole_cluxels)
+  if (!former || !canBeInStrips(work) || likelyCluxels(work.transaction, *former) <= work.params.whole_cluxels)
     return std::nullopt;
   const MapInputs inputs = storedInputs(work.transaction);
-  if (makesWideObjectsButGround(work.parsed.rules) || inputs.crs != work.parsed.inputs.crs ||
-      inputs.map_origin != work.parsed.inputs.map_origin)
-    return std::nullopt;
+  if (inputs.crs != work.parsed.inputs.crs || inputs.map_origin != work.parsed.inputs.map_origin) return std::nullopt;
   writeOntology(work.transaction, work.parsed.inputs);
   auto update = StripUpdate(work, *std::move(former)).run();
   if (update)
@@ -198,6 +186,11 @@ SemanticUpdate updateAtOnce(const LayerWork& work) {
 }
 
 }  // namespace
+
+bool canBeInStrips(const LayerWork& work) {
+  const std::optional<double> reach_m = rules::localReach(work.parsed.rules).reach_m;
+  return reach_m && *reach_m <= perception::kTileSize_m && !makesWideObjectsButGround(work.parsed.rules);
+}
 
 SemanticUpdate updateAll(const LayerWork& work, const OutputChanges& changes) {
   std::vector<ObjectMembers> before = formerObjects(work.transaction, changes);

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// The points of a batch that is larger than memory should hold, band by band, from the scans as they are stored.
+#pragma once
+
+#include <cstdint>
+#include <set>
+#include <vector>
+
+#include "mapping/build/scan_store.hpp"
+#include "perception/point_bands.hpp"
+
+namespace cluxel::mapping {
+
+/// Unpacks each scan once, when the first band comes to it. What it has in later bands stays in memory until then.
+class ScanBands final : public perception::PointBands {
+ public:
+  /// `changes`: with stored scans. A band has rows with `max_points` points or more. `transaction` must outlive it, and
+  /// keep its scans.
+  ScanBands(const rdf::ReadTransaction& transaction, PointChanges changes, std::uint64_t max_points, unsigned threads);
+
+  perception::Axis axis() const override { return axis_; }
+  perception::PointBand next() override;
+
+ private:
+  std::int64_t nextEnd();
+  void unpackBefore(std::int64_t end);
+
+  const rdf::ReadTransaction& transaction_;
+  PointChanges changes_;  ///< `added`: what is unpacked and in no band yet
+  std::uint64_t max_points_;
+  unsigned threads_;
+  perception::Axis axis_;
+  std::map<std::int64_t, std::uint64_t> points_of_row_;  ///< that are in no band yet
+  std::multimap<std::int64_t, scan::ScanId> scans_;      ///< by first row: those not unpacked yet
+};
+
+}  // namespace cluxel::mapping
