@@ -74,15 +74,16 @@ PresenceUpdate::PresenceUpdate(const rdf::ReadTransaction& transaction, const pe
   std::vector<rules::SemanticObject> asked;
   for (std::size_t i = 0; i < objects.size(); ++i) {
     const std::vector<Eigen::Vector3d> places = placesOn(scene, objects[i]);
+    if (places.empty()) continue;  // the ground: it has no row
     const Eigen::AlignedBox3d box = boxAround(places);
     ContentHasher hasher;
     hasher.add(kVersion).addBytes(places.data(), places.size() * sizeof(Eigen::Vector3d));
-    for (std::size_t c = 0; c < timed.size() && !places.empty(); ++c)
+    for (std::size_t c = 0; c < timed.size(); ++c)
       if (mayPass(*timed[c], places, box)) hasher.add(cloud_hash[c]);
     causes_[i] = hasher.finish();
-    if (const auto row = storedRow(transaction, ids_[i]); row && row->cause == causes_[i]) {
+    if (const auto row = storedRow(transaction, ids_[i]); row && row->cause == *causes_[i]) {
       presence_[i] = presenceFrom(*row);
-    } else if (!places.empty()) {
+    } else {
       unknown_.push_back(i);
       asked.push_back(objects[i]);
     }
@@ -97,8 +98,9 @@ std::vector<MaybePresence> PresenceUpdate::finish(rdf::WriteTransaction& transac
   }
   if (covered == Covered::All)
     eraseRowsBut(transaction, tables::kPresence, is_told_ ? ids_ : std::vector<ContentHash>{});
-  for (std::size_t i = 0; is_told_ && i < presence_.size(); ++i) {
-    const Row row = rowOf(causes_[i], presence_[i]);
+  for (std::size_t i = 0; i < presence_.size(); ++i) {
+    if (!causes_[i]) continue;
+    const Row row = rowOf(*causes_[i], presence_[i]);
     putRow(transaction, tables::kPresence, ids_[i], {reinterpret_cast<const char*>(&row), sizeof row});
   }
   return std::move(presence_);

@@ -31,7 +31,8 @@ class PresenceUpdate {
 
  private:
   bool is_told_ = false;                                       ///< two clouds or more have a time and a pose
-  std::vector<ContentHash> ids_, causes_;                      ///< of each object
+  std::vector<ContentHash> ids_;                               ///< of each object
+  std::vector<std::optional<ContentHash>> causes_;             ///< of its row; absent when it has none
   std::vector<std::optional<perception::Presence>> presence_;  ///< of each object
   std::vector<std::size_t> unknown_;                           ///< numbers of objects
   std::optional<PresenceVoting> voting_;
