@@ -98,6 +98,7 @@ inline std::map<std::string, int> differingTables(const std::filesystem::path& a
 enum class How : std::uint8_t {
   Around,    ///< in a window, however large
   InStrips,  ///< everything anew, strip by strip
+  Growing,   ///< what is new strip by strip
 };
 
 class StreetChanges {
@@ -123,6 +124,26 @@ class StreetChanges {
     there_[scan] = 1 - there_[scan];
     note(moveScans(map(), {{scans_.idOf(scan), scans_.poseOf(scan, there_[scan])}}, params(), silence()));
     return "repose";
+  }
+
+  /// Most scans go, and many come at once: in bands of tiles, and decided strip by strip.
+  std::string grow() {
+    std::vector<ScanId> gone;
+    while (there_.size() > 3) {
+      const auto scan = std::next(there_.begin(), static_cast<std::ptrdiff_t>(below(there_.size())));
+      gone.push_back(scans_.idOf(scan->first));
+      there_.erase(scan);
+    }
+    if (!gone.empty()) retractScans(map(), gone, {}, silence());
+    std::map<std::size_t, int> fresh;
+    for (std::size_t scan = 0; scan < scans_.size(); ++scan)
+      if (!there_.contains(scan) && below(6) != 0) fresh[scan] = static_cast<int>(below(2));
+    ChangeParams params{.threads = 1 + static_cast<unsigned>(below(2)), .whole_cluxels = 50U << below(5)};
+    params.stage_points = below(2) == 0 ? 1 : 30'000;
+    const ChangeReport report = extendMap(map(), scans_.at(fresh, folder_.path()), params, silence());
+    if (report.local_commits == 1 && report.tiles_decided > report.tiles) ++computed_;  // beside strips twice
+    there_.merge(fresh);
+    return "grow in bands of " + std::to_string(params.stage_points) + " points";
   }
 
   /// Something is stated about a thing or a region, or withdrawn.

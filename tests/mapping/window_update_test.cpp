@@ -80,6 +80,12 @@ TEST(WindowUpdate, DecidesAllInStripsAsABuildDoes) {
       How::InStrips);
 }
 
+TEST(WindowUpdate, GrowsInBandsAndStripsAsABuildDoes) {
+  checkSequences(
+      140, 6, [](StreetChanges& changes, unsigned i) { return i % 3 == 2 ? changes.stateSomething() : changes.grow(); },
+      How::Growing);
+}
+
 /// How many primitives were decided.
 class SceneSize : public ProgressSink {
  public:

@@ -96,6 +96,15 @@ bool areSame(const std::vector<SeenCloud>& a, const std::vector<SeenCloud>& b) {
   });
 }
 
+bool haveOtherTimes(const std::vector<SeenCloud>& before, const std::vector<SeenCloud>& now) {
+  std::map<ContentHash, std::optional<double>> times;
+  for (const SeenCloud& cloud : before) times.emplace(cloud.id, cloud.time_s);
+  return std::any_of(now.begin(), now.end(), [&](const SeenCloud& cloud) {
+    const auto known = times.find(cloud.id);
+    return known != times.end() && known->second != cloud.time_s;
+  });
+}
+
 bool tellsPresence(const std::vector<SeenCloud>& clouds) {
   return std::count_if(clouds.begin(), clouds.end(),
                        [](const SeenCloud& cloud) { return cloud.time_s && cloud.has_pose; }) >= 2;

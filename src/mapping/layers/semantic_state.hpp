@@ -24,6 +24,9 @@ struct SeenCloud {
 /// Whether lists, each ascending by id, name the same clouds with the same poses and times.
 bool areSame(const std::vector<SeenCloud>& a, const std::vector<SeenCloud>& b);
 
+/// Whether a cloud of both lists has another time. Observations anywhere tell it.
+bool haveOtherTimes(const std::vector<SeenCloud>& before, const std::vector<SeenCloud>& now);
+
 struct SemanticState {
   std::uint64_t cluxels = 0, primitives = 0, objects = 0;
   std::vector<ContentHash> statements;  ///< of operators, ascending by id

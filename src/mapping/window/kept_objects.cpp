@@ -31,12 +31,12 @@ void forEachKept(const MapWindow& window, const WindowDecision& decision, const 
   }
 }
 
+}  // namespace
+
 bool isInside(const ObjectRecord& record, const MapWindow& window) {
   return !record.is_class_wide && std::all_of(record.tiles.begin(), record.tiles.end(),
                                               [&](const auto& tile) { return window.first_cluxel.contains(tile); });
 }
-
-}  // namespace
 
 WindowOwners ownersIn(const MapWindow& window, const WindowDecision& decision,
                       const std::vector<std::uint32_t>& former) {

@@ -9,6 +9,9 @@
 
 namespace cluxel::mapping {
 
+/// Whether the window holds all of an object; false for one of a whole class.
+bool isInside(const ObjectRecord& record, const MapWindow& window);
+
 /// Whom the cluxels of a window belong to after a change, by number in `objects`.
 struct WindowOwners {
   std::vector<ContentHash> objects;

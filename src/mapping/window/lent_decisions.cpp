@@ -10,7 +10,7 @@
 #include "mapping/map_tables.hpp"
 #include "mapping/statements/overruled_objects.hpp"
 #include "mapping/statements/statement_places.hpp"
-#include "mapping/window/window_presence.hpp"
+#include "mapping/window/passed_objects.hpp"
 #include "rdf/vocabulary.hpp"
 
 namespace cluxel::mapping {

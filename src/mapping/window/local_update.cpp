@@ -18,11 +18,11 @@
 #include "mapping/window/lent_decisions.hpp"
 #include "mapping/window/likely_tiles.hpp"
 #include "mapping/window/map_window.hpp"
+#include "mapping/window/passed_objects.hpp"
 #include "mapping/window/window_change.hpp"
 #include "mapping/window/window_decision.hpp"
 #include "mapping/window/window_facts.hpp"
 #include "mapping/window/window_layers.hpp"
-#include "mapping/window/window_presence.hpp"
 #include "mapping/window/window_statements.hpp"
 #include "perception/segments/primitive_inputs.hpp"
 #include "rdf/vocabulary.hpp"
@@ -80,7 +80,8 @@ class LocalUpdate {
     clouds_ = storedClouds(transaction_);
     before_ = lent_ != nullptr ? lent_->state() : *std::move(before);
     now_ = {0, 0, 0, statementIds(transaction_), seenClouds(clouds_)};
-    if (tellsPresence(before_.clouds) != tellsPresence(now_.clouds) || hasOtherTimes()) return std::nullopt;
+    if (tellsPresence(before_.clouds) != tellsPresence(now_.clouds) || haveOtherTimes(before_.clouds, now_.clouds))
+      return std::nullopt;
     if (inputs_ == ChangedInputs::Rules) {
       const std::optional<RuleChange> other = changeOfRules(transaction_, parsed_.rules);
       if (!other || other->former_reach_m > perception::kTileSize_m) return std::nullopt;
@@ -89,8 +90,8 @@ class LocalUpdate {
       changes_.tiles.insert(other->tiles.begin(), other->tiles.end());
       if (changes_.tiles.empty()) return unchanged();
     }
-    more_ = lent_ != nullptr ? lent_->passed()
-                             : tilesOfPassedObjects(transaction_, changedRays(before_.clouds, now_.clouds));
+    if (lent_ != nullptr) more_ = lent_->passed();
+    if (lent_ == nullptr) passed_ = passedObjects(transaction_, changedRays(before_.clouds, now_.clouds));
     const std::vector<SemanticState> maps = lent_ != nullptr ? lent_->statesOfMaps() : std::vector{before_};
     WindowStatements statements(transaction_, parsed_, stages_, clouds_, changes_, map_, maps, now_);
     for (; attempt_ < kMaxAttempts && !statements.needsWholeMap(); ++attempt_) {
@@ -223,16 +224,6 @@ class LocalUpdate {
     return static_cast<double>(tiles) > params_.max_window_share * static_cast<double>(map_.size());
   }
 
-  /// Whether a cloud that stays has another time. Observations anywhere tell it.
-  bool hasOtherTimes() const {
-    std::map<ContentHash, std::optional<double>> times;
-    for (const SeenCloud& cloud : before_.clouds) times.emplace(cloud.id, cloud.time_s);
-    return std::any_of(now_.clouds.begin(), now_.clouds.end(), [&](const SeenCloud& cloud) {
-      const auto known = times.find(cloud.id);
-      return known != times.end() && known->second != cloud.time_s;
-    });
-  }
-
   /// Whether an object of a whole class comes or goes, or is not the ground, which alone has neither neighbours nor
   /// facts from rays: such a change is told by the whole map.
   bool changesWideObjects(const MapWindow& window, const WindowDecision& decision,
@@ -256,7 +247,7 @@ class LocalUpdate {
     std::vector<rules::SemanticObject> made = decision.objects;
     std::erase_if(made, [](const rules::SemanticObject& object) { return object.is_class_wide; });
     update.objects = before_.objects + made.size() - decision.replaced.size();
-    if (strip_ == nullptr) {
+    if (strip_ == nullptr || strip_->keeps_lists) {
       update.before = replacedObjects(window, decision);
       update.after = membersOf(made, window.scene.cluxels);
       keepDifferent(update.before, update.after);
@@ -275,6 +266,7 @@ class LocalUpdate {
     statements.store(transaction_, window);
     if (strip_ == nullptr && !now_.statements.empty())
       update.statements = toldOutcomes(rdf::QuadReader(static_cast<const rdf::ReadTransaction&>(transaction_)));
+    updatePassedObjects(transaction_, parsed_, stages_, clouds_, passed_, window, params_.threads);
     if (check_) check_(0);
     if (strip_ == nullptr) inferFacts(transaction_, parsed_.inputs, sink_, check_);
     now_.objects = update.objects, now_.cluxels = update.cluxels, now_.primitives = update.primitives;
@@ -325,7 +317,8 @@ class LocalUpdate {
   TileSet decided_otherwise_;  ///< tiles in which thresholds of the rules moved beyond what was measured
   double reach_m_ = 0;
   std::set<ContentHash> lone_objects_;
-  TileSet more_;  ///< tiles that the window holds beside those around the change
+  std::set<ContentHash> passed_;  ///< objects that rays pass of clouds that came or went
+  TileSet more_;                  ///< tiles that the window holds beside those around the change
   std::size_t attempt_ = 0;
   bool needs_whole_map_ = false;
   std::vector<Cloud> clouds_;

@@ -24,19 +24,21 @@ struct LayerWork {
   const rdf::InferenceCheck& check;
 };
 
-/// A map of which everything is decided anew shows its tiles strip by strip. What is not shown does not count.
+/// A map of which everything is decided anew, or to which many tiles are added, shows these strip by strip. What is not
+/// shown does not count.
 struct MapStrip {
-  perception::TileSet shown;           ///< the tiles of this strip and of those before
-  perception::TileSet anew;            ///< this strip, and what lies beside it: everything there counts as new
-  RetiredThings retired;               ///< what former layers of the strip name, and no strip has made again
-  std::vector<SeenCloud> told_clouds;  ///< as the facts have them
-  std::set<ContentHash> wide;          ///< objects of whole classes that the map had
-  rules::KnownSplits* splits = nullptr;
+  perception::TileSet shown;             ///< the tiles of this strip and of those before
+  perception::TileSet anew;              ///< this strip, and what lies beside it: everything there counts as new
+  RetiredThings retired;                 ///< what former layers of the strip name, and no strip has made again
+  std::vector<SeenCloud> told_clouds;    ///< as the facts have them
+  std::set<ContentHash> wide;            ///< objects of whole classes that the map had
+  rules::KnownSplits* splits = nullptr;  ///< may be absent
+  bool keeps_lists = false;              ///< SemanticUpdate tells the objects that differ
 };
 
-/// Decides in a window around the changed tiles and writes all that follows; of a strip (else null) all but inference
-/// and the lists of objects. `lent`: what another map decided, or null. Absent when the whole map has to be computed;
-/// then no decision was written.
+/// Decides in a window around the changed tiles and writes all that follows; of a strip (else null) all but inference.
+/// `lent`: what another map decided, or null. Absent when the whole map has to be computed; then no decision was
+/// written.
 std::optional<SemanticUpdate> updateAround(const LayerWork& work, OutputChanges& changes, ChangedInputs inputs,
                                            LentDecisions* lent, const MapStrip* strip);
 

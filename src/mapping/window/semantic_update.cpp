@@ -5,9 +5,10 @@
 #include "mapping/layers/stored_layers.hpp"
 #include "mapping/map_state.hpp"
 #include "mapping/presence/object_rows.hpp"
+#include "mapping/strips/growth_update.hpp"
+#include "mapping/strips/whole_update.hpp"
 #include "mapping/window/lent_decisions.hpp"
 #include "mapping/window/local_update.hpp"
-#include "mapping/strips/whole_update.hpp"
 
 namespace cluxel::mapping {
 
@@ -35,6 +36,8 @@ SemanticUpdate updateSemanticLayer(rdf::WriteTransaction& transaction, const Par
   OutputChanges changes = stages.takeChanges();
   if (inputs == ChangedInputs::Inference)
     if (auto update = updateInference(work, changes)) return *std::move(update);
+  if (inputs == ChangedInputs::Scans)
+    if (auto update = updateByGrowth(work, changes)) return *std::move(update);
   std::optional<LentDecisions> lent;
   if (inputs == ChangedInputs::Scans && changes.lender != nullptr) {
     lent.emplace(transaction, *changes.lender);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Objects that stay count too: rays of the clouds that changed may pass them.
+// When clouds changed, objects that stay count too: rays of these clouds may pass them.
 #include "mapping/window/window_presence.hpp"
 
 #include <algorithm>
@@ -16,41 +16,14 @@
 
 namespace cluxel::mapping {
 
-namespace {
-
-using perception::TileKey;
-using perception::TileSet;
-
-/// Tiles whose rectangle comes near a box.
-bool comesNear(const TileKey& tile, const Eigen::AlignedBox3d& box) {
-  constexpr double kAround_m = 1;
-  return boxOfTile(tile).exteriorDistance(
-             Eigen::AlignedBox2d(Eigen::Vector2d(box.min().head<2>().array() - kAround_m),
-                                 Eigen::Vector2d(box.max().head<2>().array() + kAround_m))) <= 0;
-}
-
-}  // namespace
-
-TileSet tilesOfPassedObjects(const rdf::ReadTransaction& transaction, const std::vector<Eigen::AlignedBox3d>& rays) {
-  TileSet tiles;
-  std::set<ContentHash> objects;
-  for (const TileKey& tile : storedTiles(transaction)) {
-    if (std::none_of(rays.begin(), rays.end(), [&](const auto& box) { return comesNear(tile, box); })) continue;
-    if (const auto layer = storedLayer(transaction, tile))
-      for (const TileLayer::Share& share : layer->shares) objects.insert(share.object);
-  }
-  for (const ContentHash& object : objects)
-    if (const auto record = storedRecord(transaction, object); record && !record->is_class_wide)
-      tiles.insert(record->tiles.begin(), record->tiles.end());
-  return tiles;
-}
-
 WindowPresence updatePresenceIn(rdf::WriteTransaction& transaction, const WindowFacts& facts,
                                 const std::vector<rules::SemanticObject>& made) {
   const perception::Scene& scene = facts.decided.window.scene;
   std::vector<rules::SemanticObject> asked = made;
-  const auto kept = keptObjects(transaction, facts.decided.window, facts.decided.decision, facts.decided.former);
-  asked.insert(asked.end(), kept.begin(), kept.end());
+  if (!areSame(facts.clouds_before, seenClouds(facts.clouds))) {
+    const auto kept = keptObjects(transaction, facts.decided.window, facts.decided.decision, facts.decided.former);
+    asked.insert(asked.end(), kept.begin(), kept.end());
+  }
   const auto counts_rays = [&](const rules::SemanticObject& object) {
     return facts.parsed.rules.catalogue.isA(object.class_iri, rdf::vocabulary::clx("Barrier"));
   };

@@ -27,9 +27,4 @@ struct WindowPresence {
 WindowPresence updatePresenceIn(rdf::WriteTransaction& transaction, const WindowFacts& facts,
                                 const std::vector<rules::SemanticObject>& made);
 
-/// The tiles of all objects that rays in these boxes may pass: when these objects were there is computed anew when the
-/// clouds of the rays come or go.
-perception::TileSet tilesOfPassedObjects(const rdf::ReadTransaction& transaction,
-                                         const std::vector<Eigen::AlignedBox3d>& rays);
-
 }  // namespace cluxel::mapping

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+// A change that adds many tiles is decided strip by strip, so that its memory does not follow the change.
+#pragma once
+
+#include "mapping/window/local_update.hpp"
+
+namespace cluxel::mapping {
+
+/// After scans came, and no tiles of another map. Absent, with nothing written, when the tiles that are new have fewer
+/// cluxels than UpdateParams::whole_cluxels, or cannot be decided strip by strip.
+std::optional<SemanticUpdate> updateByGrowth(const LayerWork& work, const OutputChanges& changes);
+
+}  // namespace cluxel::mapping

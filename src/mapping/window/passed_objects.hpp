@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// Objects that stay as they are, and that rays of clouds pass that came or went.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <set>
+#include <vector>
+
+#include "mapping/build/tile_stages.hpp"
+#include "mapping/cloud.hpp"
+#include "mapping/facts/semantic_layer.hpp"
+#include "mapping/window/map_window.hpp"
+
+namespace cluxel::mapping {
+
+/// The objects that rays in these boxes may pass, but those of whole classes: when they were there is computed anew
+/// when the clouds of the rays come or go.
+std::set<ContentHash> passedObjects(const rdf::ReadTransaction& transaction,
+                                    const std::vector<Eigen::AlignedBox3d>& rays);
+/// The tiles of these objects.
+perception::TileSet tilesOfPassedObjects(const rdf::ReadTransaction& transaction,
+                                         const std::vector<Eigen::AlignedBox3d>& rays);
+
+/// Computes and tells when those of `objects` were there that the window does not hold as a whole, and how many rays
+/// passed them, from the rays of all clouds of the map. The stored layers of their tiles must be those of the stored
+/// outputs. Reads some hundred tiles at a time.
+void updatePassedObjects(rdf::WriteTransaction& transaction, const ParsedInputs& parsed, TileStages& stages,
+                         const std::vector<Cloud>& clouds, const std::set<ContentHash>& objects,
+                         const MapWindow& window, unsigned threads);
+
+}  // namespace cluxel::mapping
