@@ -13,8 +13,7 @@
 #include "mapping/facts/fact_units.hpp"
 #include "mapping/facts/object_facts.hpp"
 #include "mapping/layers/stored_layers.hpp"
-#include "mapping/presence/passed_rays.hpp"
-#include "mapping/presence/stored_presence.hpp"
+#include "mapping/presence/object_presence.hpp"
 #include "mapping/window/kept_objects.hpp"
 #include "mapping/window/map_window.hpp"
 #include "rdf/map_iris.hpp"
@@ -109,20 +108,11 @@ class PassedUpdate {
     std::vector<rules::SemanticObject> asked;
     for (auto& [id, object] : together.objects)
       if (!object.parts.empty()) asked.push_back(std::move(object));
-    const auto counts_rays = [&](const rules::SemanticObject& object) {
-      return parsed_.rules.catalogue.isA(object.class_iri, rdf::vocabulary::clx("Barrier"));
-    };
-    PresenceUpdate presence(transaction_, scene, asked, clouds_, threads_);
-    PassedRaysUpdate rays(transaction_, scene, asked, clouds_, counts_rays, threads_);
-    std::vector<RayObserver*> observers{&rays};
-    if (presence.observer() != nullptr) observers.push_back(presence.observer());
-    passRays(clouds_, observers, [&](const Cloud& cloud) { return storedScan(transaction_, cloud.id); });
-    const auto times = presence.finish(transaction_, Covered::Some);
-    const auto counts = rays.finish(transaction_, Covered::Some);
+    const ObjectPresence presence = updatePresence(transaction_, parsed_.rules, scene, asked, clouds_, {}, threads_);
     for (std::size_t i = 0; i < asked.size(); ++i) {
       const rdf::TermId subject = facts_.iri(rdf::iriOfObject(asked[i].id));
       for (const std::string_view property : kRayProperties) patch_.replace(subject, facts_.property(property));
-      addRayFacts(subject, i < times.size() ? times[i] : std::nullopt, counts[i], facts_);
+      addRayFacts(subject, presence.times[i], presence.rays[i], facts_);
     }
   }
 
