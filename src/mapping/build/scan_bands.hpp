@@ -3,8 +3,7 @@
 #pragma once
 
 #include <cstdint>
-#include <set>
-#include <vector>
+#include <map>
 
 #include "mapping/build/scan_store.hpp"
 #include "perception/point_bands.hpp"

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tiles are sorted along the longer side, and a strip ends when it has its share of the weight.
+// Tiles are sorted along the direction in which they spread most. A strip ends when it has its share of the weight.
 #include "mapping/strips/map_strips.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <map>
 #include <utility>
 
 #include "mapping/map_tables.hpp"
-#include "mapping/strips/long_direction.hpp"
 
 namespace cluxel::mapping {
 
@@ -16,7 +16,19 @@ namespace {
 using perception::TileKey;
 using perception::TileSet;
 
-std::vector<TileKey> alongTheLongerSide(const TileSet& tiles) {
+/// The direction in which places (one a column) spread most, by principal components. x when they spread alike.
+Eigen::Vector2d longDirection(const Eigen::Matrix2Xd& places) {
+  if (places.cols() < 2) return Eigen::Vector2d::UnitX();
+  const Eigen::Matrix2Xd centred = places.colwise() - places.rowwise().mean();
+  const Eigen::Matrix2d spread = centred * centred.transpose();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(spread);
+  const Eigen::Vector2d values = solver.eigenvalues();
+  if (!(values[1] > 1.01 * values[0])) return Eigen::Vector2d::UnitX();
+  const Eigen::Vector2d along = solver.eigenvectors().col(1);
+  return along.x() < 0 || (along.x() == 0 && along.y() < 0) ? Eigen::Vector2d(-along) : along;
+}
+
+std::vector<TileKey> sortedAlong(const TileSet& tiles) {
   std::vector<TileKey> sorted(tiles.begin(), tiles.end());
   Eigen::Matrix2Xd places(2, static_cast<Eigen::Index>(sorted.size()));
   for (std::size_t i = 0; i < sorted.size(); ++i)
@@ -36,7 +48,7 @@ std::vector<TileSet> stripsOf(const TileSet& tiles, std::size_t count,
   for (const TileKey& tile : tiles) all += weights[tile] = weight_of(tile);
   std::vector<TileSet> strips(1);
   std::uint64_t of_strip = 0;
-  for (const TileKey& tile : alongTheLongerSide(tiles)) {
+  for (const TileKey& tile : sortedAlong(tiles)) {
     if (of_strip > 0 && of_strip * count >= all) strips.emplace_back(), of_strip = 0;
     strips.back().insert(tile);
     of_strip += weights.at(tile);

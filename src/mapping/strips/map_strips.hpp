@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Strips of a map's tiles across the longer side of its area: what is too large to be computed at once goes strip by
-// strip, because a strip has a short border.
+// Strips of a map's tiles, across the direction in which they spread most: a strip has a short border. What is too
+// large to be computed at once goes strip by strip.
 #pragma once
 
 #include <cstdint>
