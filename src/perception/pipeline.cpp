@@ -19,7 +19,7 @@ namespace {
 class Run {
  public:
   Run(const PerceptionParams& params, TileOutputs& outputs, const RunOptions& options, Axis axis)
-      : params_(params), out_(outputs), options_(options), axis_(axis), front_(axis) {}
+      : params_(params), out_(outputs), options_(options), front_(axis) {}
 
   void toFeatures(TileSegments segments) {
     toGround({std::move(segments)});
@@ -143,10 +143,9 @@ class Run {
       take(Stage::Labels, taken);
       compute(Stage::Labels, out_.labels, dirty, 0, dirty.size(),
               [&](const TileKey& key) { return labeller.label(ringIn(out_.features, key), params); });
-      if (options_.store != nullptr) inputs_.dropRowsBefore(row - 1, axis_);
+      if (options_.store != nullptr) inputs_.dropRowsBefore(row - 1, front_.axis());
     }
-    // Rows that were added for labels two rows back are added again, together with further ones of their tile.
-    if (options_.store != nullptr) inputs_.dropVolumesBefore(front_.firstRead(), axis_);
+    if (options_.store != nullptr) inputs_.dropVolumesBefore(front_.firstRead(), front_.axis());
   }
 
   void summarise() {
@@ -293,7 +292,6 @@ class Run {
   const PerceptionParams& params_;
   TileOutputs& out_;
   const RunOptions& options_;
-  Axis axis_;
   StageFront front_;
   BorderWidths widths_;
   RunTiles tiles_;

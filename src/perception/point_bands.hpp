@@ -55,6 +55,7 @@ class StageFront {
 
   /// The points are complete in the rows before `end`.
   void moveTo(std::int64_t end) { from_ = std::exchange(end_, end); }
+  Axis axis() const { return axis_; }
   std::int32_t rowOf(const TileKey& key) const { return perception::rowOf(key, axis_); }
   /// The row before which the stage may compute its tiles.
   std::int64_t endOf(Stage stage) const { return behind(end_, stage); }
@@ -66,15 +67,16 @@ class StageFront {
   /// In the order of rows.
   std::vector<TileKey> inRows(const TileSet& tiles) const;
   bool isAtEnd() const { return end_ == kEndOfRows; }
-  /// What is in memory of rows before this one will not be read again.
+  /// No stage will read tiles in rows before this one again.
   std::int64_t firstRead() const { return isAtEnd() ? kEndOfRows : end_ - kFarthest; }
 
  private:
   static constexpr std::int64_t kBeforeRows = std::numeric_limits<std::int64_t>::min();
   /// Points, cluxels, ground, features, labels, summaries, even, components, contacts.
   static constexpr std::array<std::int64_t, kStageCount> kBehind{0, 1, 2, 3, 4, 1, 3, 4, 5};
-  /// Labels stay four rows behind. They read rows of features in the row before, and rows that were there already are
-  /// computed again with new ones of their tile: for labels in the row before that, with volumes in one more.
+  /// How many rows behind the points a stage may still read. Labels, four rows behind, read features one row farther. A
+  /// tile may have features of some cluxels from an earlier band; these are computed again with the rest, and read
+  /// volumes of cluxels two rows farther.
   static constexpr std::int64_t kFarthest = 7;
 
   static std::int64_t behind(std::int64_t end, Stage stage) {
