@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <map>
 
-#include "mapping/build/scan_store.hpp"
+#include "mapping/clouds/scan_store.hpp"
 #include "mapping/layers/primitive_tiles.hpp"
 #include "mapping/layers/stored_layers.hpp"
 #include "mapping/window/likely_tiles.hpp"

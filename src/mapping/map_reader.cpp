@@ -7,9 +7,9 @@
 #include <set>
 
 #include "cluxel/error.hpp"
-#include "mapping/build/scan_store.hpp"
 #include "mapping/build/tile_stages.hpp"
 #include "mapping/build/way_tiles.hpp"
+#include "mapping/clouds/scan_store.hpp"
 #include "mapping/facts/object_geometry.hpp"
 #include "mapping/layers/stored_layers.hpp"
 #include "mapping/map_part.hpp"

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "mapping/cloud.hpp"
+#include "mapping/clouds/cloud.hpp"
 #include "mapping/map_inputs.hpp"
 #include "mapping/statements/statement.hpp"
 #include "perception/segments/scene.hpp"

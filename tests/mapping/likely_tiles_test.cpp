@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "mapping/build/scan_store.hpp"
+#include "mapping/clouds/scan_store.hpp"
 #include "mapping/facts/semantic_layer.hpp"
 #include "mapping/layers/stored_layers.hpp"
 #include "mapping/map_tables.hpp"

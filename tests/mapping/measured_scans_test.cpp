@@ -10,7 +10,7 @@
 
 #include "base/file_bytes.hpp"
 #include "cluxel/error.hpp"
-#include "mapping/build/scan_store.hpp"
+#include "mapping/clouds/scan_store.hpp"
 #include "mapping/small_campus.hpp"
 
 namespace cluxel::mapping {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Scans come in turn for any number of threads, and so do their faults.
-#include "mapping/build/scan_reader.hpp"
+#include "mapping/clouds/scan_reader.hpp"
 
 #include <gtest/gtest.h>
 
 #include <filesystem>
 
-#include "mapping/build/recent_scans.hpp"
+#include "mapping/clouds/recent_scans.hpp"
 #include "mapping/small_campus.hpp"
 
 namespace cluxel::mapping {

@@ -9,9 +9,9 @@
 #include <random>
 
 #include "cluxel/error.hpp"
-#include "mapping/build/packed_points.hpp"
-#include "mapping/build/scan_store.hpp"
 #include "mapping/change/map_change.hpp"
+#include "mapping/clouds/packed_points.hpp"
+#include "mapping/clouds/scan_store.hpp"
 #include "mapping/map_tables.hpp"
 #include "mapping/small_campus.hpp"
 

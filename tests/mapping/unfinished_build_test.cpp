@@ -12,8 +12,8 @@
 
 #include "base/file_bytes.hpp"
 #include "cluxel/error.hpp"
-#include "mapping/build/scan_store.hpp"
 #include "mapping/change/map_update.hpp"
+#include "mapping/clouds/scan_store.hpp"
 #include "mapping/facts/map_history.hpp"
 #include "mapping/map_state.hpp"
 #include "mapping/small_campus.hpp"

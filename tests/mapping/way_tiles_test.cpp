@@ -8,7 +8,7 @@
 #include <random>
 
 #include "cluxel/error.hpp"
-#include "mapping/build/scan_store.hpp"
+#include "mapping/clouds/scan_store.hpp"
 #include "mapping/map_tables.hpp"
 #include "mapping/ways/skeleton.hpp"
 #include "mapping/ways/way_stage.hpp"

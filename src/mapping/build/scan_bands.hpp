@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <map>
 
-#include "mapping/build/scan_store.hpp"
+#include "mapping/clouds/scan_store.hpp"
 #include "perception/point_bands.hpp"
 
 namespace cluxel::mapping {

@@ -5,9 +5,9 @@
 #include <array>
 
 #include "base/free_memory.hpp"
-#include "mapping/build/recent_scans.hpp"
 #include "mapping/build/scan_bands.hpp"
 #include "mapping/build/way_tiles.hpp"
+#include "mapping/clouds/recent_scans.hpp"
 #include "mapping/damaged_map.hpp"
 #include "mapping/map_tables.hpp"
 

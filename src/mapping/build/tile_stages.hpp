@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "cluxel/progress.hpp"
-#include "mapping/build/scan_store.hpp"
+#include "mapping/clouds/scan_store.hpp"
 #include "mapping/map_inputs.hpp"
 #include "perception/pipeline.hpp"
 #include "rdf/file/environment.hpp"

@@ -5,7 +5,7 @@
 #include <map>
 
 #include "base/parallel.hpp"
-#include "mapping/build/scan_store.hpp"
+#include "mapping/clouds/scan_store.hpp"
 #include "mapping/damaged_map.hpp"
 #include "mapping/map_tables.hpp"
 #include "mapping/ways/way_stage.hpp"

@@ -8,9 +8,9 @@
 #include <thread>
 
 #include "cluxel/error.hpp"
-#include "mapping/build/scan_store.hpp"
 #include "mapping/build/work_file.hpp"
 #include "mapping/change/map_compaction.hpp"
+#include "mapping/clouds/scan_store.hpp"
 #include "scan/input_paths.hpp"
 
 namespace cluxel::mapping {

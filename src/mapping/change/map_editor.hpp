@@ -14,9 +14,9 @@
 
 #include "cluxel/progress.hpp"
 #include "mapping/build/build_lock.hpp"
-#include "mapping/build/scan_store.hpp"
 #include "mapping/build/tile_stages.hpp"
 #include "mapping/change/object_changes.hpp"
+#include "mapping/clouds/scan_store.hpp"
 #include "mapping/facts/semantic_layer.hpp"
 #include "mapping/window/semantic_update.hpp"
 #include "rdf/file/layer_sizes.hpp"

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "mapping/cloud.hpp"
+#include "mapping/clouds/cloud.hpp"
 #include "mapping/facts/fact_sink.hpp"
 #include "mapping/facts/object_geometry.hpp"
 #include "mapping/layers/wide_tile.hpp"

@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/utc_time.hpp"
-#include "mapping/build/scan_store.hpp"
+#include "mapping/clouds/scan_store.hpp"
 #include "mapping/facts/map_facts.hpp"
 #include "mapping/thing_history.hpp"
 #include "rdf/map_iris.hpp"

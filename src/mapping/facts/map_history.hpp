@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "mapping/change/object_changes.hpp"
-#include "mapping/cloud.hpp"
+#include "mapping/clouds/cloud.hpp"
 #include "mapping/map_inputs.hpp"
 #include "rdf/file/environment.hpp"
 

@@ -6,8 +6,8 @@
 #include <future>
 
 #include "cluxel/error.hpp"
-#include "mapping/build/scan_store.hpp"
 #include "mapping/build/way_tiles.hpp"
+#include "mapping/clouds/scan_store.hpp"
 #include "mapping/facts/map_facts.hpp"
 #include "mapping/facts/map_oracle.hpp"
 #include "mapping/facts/object_facts.hpp"

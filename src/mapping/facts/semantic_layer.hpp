@@ -7,7 +7,7 @@
 
 #include "cluxel/progress.hpp"
 #include "mapping/build/tile_stages.hpp"
-#include "mapping/cloud.hpp"
+#include "mapping/clouds/cloud.hpp"
 #include "mapping/map_inputs.hpp"
 #include "mapping/statements/applied_statements.hpp"
 #include "mapping/ways/ways.hpp"

@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "mapping/cloud.hpp"
+#include "mapping/clouds/cloud.hpp"
 #include "rdf/file/environment.hpp"
 
 namespace cluxel::mapping {

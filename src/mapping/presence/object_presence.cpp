@@ -2,7 +2,7 @@
 // Stored rows are looked at before any is erased: an object may be gone and come again.
 #include "mapping/presence/object_presence.hpp"
 
-#include "mapping/build/scan_store.hpp"
+#include "mapping/clouds/scan_store.hpp"
 #include "mapping/map_tables.hpp"
 #include "mapping/presence/passed_rays.hpp"
 #include "mapping/presence/stored_presence.hpp"

@@ -6,7 +6,7 @@
 #include <set>
 #include <vector>
 
-#include "mapping/cloud.hpp"
+#include "mapping/clouds/cloud.hpp"
 #include "perception/segments/scene.hpp"
 #include "perception/visibility/presence.hpp"
 #include "perception/visibility/ray_bundle.hpp"

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "base/content_hash.hpp"
-#include "mapping/cloud.hpp"
+#include "mapping/clouds/cloud.hpp"
 #include "mapping/presence/object_rows.hpp"
 #include "mapping/presence/ray_pass.hpp"
 #include "perception/segments/scene.hpp"

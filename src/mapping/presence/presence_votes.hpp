@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "mapping/cloud.hpp"
+#include "mapping/clouds/cloud.hpp"
 #include "mapping/presence/ray_pass.hpp"
 #include "perception/segments/scene.hpp"
 #include "perception/visibility/presence.hpp"

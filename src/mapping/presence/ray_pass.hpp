@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "mapping/cloud.hpp"
+#include "mapping/clouds/cloud.hpp"
 #include "perception/visibility/ray_bundle.hpp"
 
 namespace cluxel::mapping {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/content_hash.hpp"
-#include "mapping/cloud.hpp"
+#include "mapping/clouds/cloud.hpp"
 #include "mapping/presence/object_rows.hpp"
 #include "mapping/presence/presence_votes.hpp"
 #include "perception/segments/scene.hpp"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "mapping/build/tile_stages.hpp"
-#include "mapping/cloud.hpp"
+#include "mapping/clouds/cloud.hpp"
 #include "mapping/statements/statement.hpp"
 #include "rules/objects/semantic_object.hpp"
 

@@ -2,7 +2,7 @@
 // Facts go into graph `observed`: they follow from the statements and the scans.
 #include "mapping/statements/statement_facts.hpp"
 
-#include "mapping/build/scan_store.hpp"
+#include "mapping/clouds/scan_store.hpp"
 #include "mapping/statements/statement_places.hpp"
 #include "mapping/thing_history.hpp"
 #include "rdf/map_iris.hpp"

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "base/free_memory.hpp"
-#include "mapping/build/scan_store.hpp"
+#include "mapping/clouds/scan_store.hpp"
 #include "mapping/facts/semantic_layer.hpp"
 #include "mapping/layers/stored_layers.hpp"
 #include "mapping/map_tables.hpp"

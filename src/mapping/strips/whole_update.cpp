@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <set>
 
-#include "mapping/build/scan_store.hpp"
+#include "mapping/clouds/scan_store.hpp"
 #include "mapping/facts/told_ways.hpp"
 #include "mapping/layers/stored_layers.hpp"
 #include "mapping/map_state.hpp"

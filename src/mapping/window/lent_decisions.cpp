@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "mapping/build/scan_store.hpp"
+#include "mapping/clouds/scan_store.hpp"
 #include "mapping/damaged_map.hpp"
 #include "mapping/layers/stored_layers.hpp"
 #include "mapping/map_tables.hpp"

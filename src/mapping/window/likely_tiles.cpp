@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "mapping/build/scan_store.hpp"
+#include "mapping/clouds/scan_store.hpp"
 #include "mapping/layers/stored_layers.hpp"
 #include "mapping/window/map_window.hpp"
 #include "rules/decide/local_reach.hpp"

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <unordered_map>
 
-#include "mapping/build/scan_store.hpp"
 #include "mapping/build/way_tiles.hpp"
+#include "mapping/clouds/scan_store.hpp"
 #include "mapping/facts/told_ways.hpp"
 #include "mapping/layers/rule_margins.hpp"
 #include "mapping/layers/semantic_state.hpp"

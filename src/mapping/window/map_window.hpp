@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "mapping/build/tile_stages.hpp"
-#include "mapping/cloud.hpp"
+#include "mapping/clouds/cloud.hpp"
 #include "mapping/layers/tile_layer.hpp"
 #include "perception/segments/scene_assembly.hpp"
 #include "rdf/file/environment.hpp"

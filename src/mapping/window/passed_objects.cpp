@@ -6,7 +6,7 @@
 #include <map>
 #include <utility>
 
-#include "mapping/build/scan_store.hpp"
+#include "mapping/clouds/scan_store.hpp"
 #include "mapping/damaged_map.hpp"
 #include "mapping/facts/fact_patch.hpp"
 #include "mapping/facts/fact_sink.hpp"

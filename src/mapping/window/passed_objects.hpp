@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "mapping/build/tile_stages.hpp"
-#include "mapping/cloud.hpp"
+#include "mapping/clouds/cloud.hpp"
 #include "mapping/facts/semantic_layer.hpp"
 #include "mapping/window/map_window.hpp"
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "cluxel/progress.hpp"
-#include "mapping/cloud.hpp"
+#include "mapping/clouds/cloud.hpp"
 #include "mapping/facts/semantic_layer.hpp"
 #include "mapping/layers/semantic_state.hpp"
 #include "mapping/window/map_window.hpp"

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "mapping/build/scan_store.hpp"
+#include "mapping/clouds/scan_store.hpp"
 #include "mapping/facts/object_geometry.hpp"
 #include "mapping/layers/wide_tile.hpp"
 

@@ -6,7 +6,7 @@
 #include <deque>
 #include <future>
 
-#include "mapping/build/scan_store.hpp"
+#include "mapping/clouds/scan_store.hpp"
 #include "scan/scan_set.hpp"
 
 namespace cluxel::mapping {

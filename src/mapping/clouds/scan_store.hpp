@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "mapping/cloud.hpp"
+#include "mapping/clouds/cloud.hpp"
 #include "perception/pipeline.hpp"
 #include "rdf/file/environment.hpp"
 #include "scan/scan.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Bounds for the number of tiles and for the heights in a tile.
-#include "mapping/build/scan_plausibility.hpp"
+#include "mapping/clouds/scan_plausibility.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <list>
 
-#include "mapping/build/scan_store.hpp"
+#include "mapping/clouds/scan_store.hpp"
 
 namespace cluxel::mapping {
 

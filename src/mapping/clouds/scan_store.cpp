@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Stores and loads scans.
-#include "mapping/build/scan_store.hpp"
+#include "mapping/clouds/scan_store.hpp"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "base/parallel.hpp"
 #include "cluxel/error.hpp"
-#include "mapping/build/packed_points.hpp"
-#include "mapping/build/scan_plausibility.hpp"
+#include "mapping/clouds/packed_points.hpp"
+#include "mapping/clouds/scan_plausibility.hpp"
 #include "mapping/map_tables.hpp"
 #include "perception/clustering/tile_points.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Each scan has its own future: nobody waits for the slowest of several scans.
-#include "mapping/build/scan_reader.hpp"
+#include "mapping/clouds/scan_reader.hpp"
 
 #include <algorithm>
 #include <utility>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Coordinates are differences between points in the order in which they were measured: neighbours are near each other.
-#include "mapping/build/packed_points.hpp"
+#include "mapping/clouds/packed_points.hpp"
 
 #include "base/packing/zstd_packing.hpp"
 #include "cluxel/error.hpp"
