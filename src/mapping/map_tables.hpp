@@ -18,7 +18,9 @@ inline constexpr std::string_view kMeta = "meta";
 inline constexpr std::string_view kTexts = "texts";             ///< "ontology/0" ...: the inputs' texts
 inline constexpr std::string_view kScans = "scans";             ///< scan id → description
 inline constexpr std::string_view kScanPoints = "scan_points";  ///< scan id → points in the sensor frame
-inline constexpr std::string_view kPoints = "stage_points";     ///< tile → output of each stage
+/// The same, of scans whose points were committed before them.
+inline constexpr std::string_view kScansToCome = "scans_to_come";
+inline constexpr std::string_view kPoints = "stage_points";  ///< tile → output of each stage
 inline constexpr std::string_view kCluxels = "stage_cluxels";
 inline constexpr std::string_view kGround = "stage_ground";
 inline constexpr std::string_view kFeatures = "stage_features";
@@ -27,6 +29,9 @@ inline constexpr std::string_view kSummaries = "stage_summaries";
 inline constexpr std::string_view kEven = "stage_even";
 inline constexpr std::string_view kComponents = "stage_components";
 inline constexpr std::string_view kContacts = "stage_contacts";
+/// Of the stages of perception, in their order.
+inline constexpr std::array kStageTables{kPoints,    kCluxels, kGround,     kFeatures, kLabels,
+                                         kSummaries, kEven,    kComponents, kContacts};
 inline constexpr std::string_view kTileLayers = "tile_layers";  ///< tile → its primitives and objects
 inline constexpr std::string_view kObjects = "objects";         ///< object id → its record
 inline constexpr std::string_view kWideTiles = "wide_tiles";    ///< tile → what it adds to class-wide objects

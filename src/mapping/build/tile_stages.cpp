@@ -2,7 +2,7 @@
 // Where the map file keeps the outputs of the stages.
 #include "mapping/build/tile_stages.hpp"
 
-#include <array>
+#include <functional>
 
 #include "base/free_memory.hpp"
 #include "mapping/build/scan_bands.hpp"
@@ -19,20 +19,25 @@ using perception::Stage;
 using perception::TileKey;
 
 std::string_view tableOf(Stage stage) {
-  constexpr std::array<std::string_view, perception::kStageCount> kTables{
-      tables::kPoints,    tables::kCluxels, tables::kGround,     tables::kFeatures, tables::kLabels,
-      tables::kSummaries, tables::kEven,    tables::kComponents, tables::kContacts};
-  return kTables[static_cast<std::size_t>(stage)];
+  static_assert(tables::kStageTables.size() == perception::kStageCount);
+  return tables::kStageTables[static_cast<std::size_t>(stage)];
 }
 
 /// With more points in memory, these are given up before a window is assembled, which does not read them.
 constexpr std::size_t kPointsBeside = 1'000'000;
 
+/// Outputs that are read as another commit has them.
+struct EarlierOutputs {
+  const rdf::ReadTransaction* transaction = nullptr;
+  const TileSet& tiles;
+};
+
 /// Reads stored outputs; what is computed from other outputs comes after them.
 class OutputReader {
  public:
-  OutputReader(const rdf::ReadTransaction& transaction, RecentScans& scans, perception::TileOutputs& outputs)
-      : transaction_(transaction), scans_(scans), out_(outputs) {}
+  OutputReader(const rdf::ReadTransaction& transaction, RecentScans& scans, perception::TileOutputs& outputs,
+               const EarlierOutputs* earlier = nullptr)
+      : transaction_(transaction), scans_(scans), out_(outputs), earlier_(earlier) {}
 
   /// Outputs of the stages that other stages read, of the tiles that are not there.
   void read(const TileSet& keys) {
@@ -81,7 +86,9 @@ class OutputReader {
   void each(Stage stage, const TileSet& keys, const Tiles& tiles, const Visit& visit) {
     for (const TileKey& key : keys) {
       if (tiles.contains(key)) continue;
-      if (const auto block = transaction_.block(tableOf(stage), tables::keyOf(key)))
+      const bool is_earlier = earlier_ != nullptr && earlier_->tiles.contains(key);
+      const rdf::ReadTransaction& commit = is_earlier ? *earlier_->transaction : transaction_;
+      if (const auto block = commit.block(tableOf(stage), tables::keyOf(key)))
         visit(key, perception::hasBorders(stage) ? perception::withoutBorders(*block) : *block);
     }
   }
@@ -109,6 +116,7 @@ class OutputReader {
   const rdf::ReadTransaction& transaction_;
   RecentScans& scans_;
   perception::TileOutputs& out_;
+  const EarlierOutputs* earlier_;
 };
 
 /// Outputs in the tables of one write transaction.
@@ -179,6 +187,15 @@ class OtherMap final : public perception::OutputDonor {
   TileSet tiles_;
 };
 
+/// Those of tiles for which `is_other` holds, of all stages but ways.
+void giveUp(perception::TileOutputs& outputs, const std::function<bool(const TileKey&)>& is_other) {
+  const auto eraseOf = [&](auto& of_stage) {
+    std::erase_if(of_stage, [&](const auto& entry) { return is_other(entry.first); });
+  };
+  eraseOf(outputs.points), eraseOf(outputs.cluxels), eraseOf(outputs.summaries), eraseOf(outputs.ground);
+  eraseOf(outputs.features), eraseOf(outputs.labels), eraseOf(outputs.components), eraseOf(outputs.contacts);
+}
+
 class StageProgress final : public perception::StageObserver {
  public:
   explicit StageProgress(ProgressSink& sink) : sink_(sink) {}
@@ -246,23 +263,24 @@ void TileStages::noteEven(const TileSet& kept, const TileSet& changed) {
   changed_even_ = unionOf(without(std::move(changed_even_), kept), changed);
 }
 
+void TileStages::readAsBefore(const rdf::ReadTransaction* earlier, TileSet tiles) {
+  giveUp(outputs_, [&](const TileKey& tile) { return tiles.contains(tile) != read_as_before_.contains(tile); });
+  earlier_ = earlier, read_as_before_ = std::move(tiles);
+}
+
 void TileStages::load(const rdf::ReadTransaction& transaction) {
   RecentScans scans(transaction);
   OutputReader(transaction, scans, outputs_).readForScene(storedTiles(transaction));
 }
 
 void TileStages::hold(const rdf::ReadTransaction& transaction, const TileSet& tiles, const TileSet& around) {
-  const auto giveUpOthers = [&](auto& outputs) {
-    std::erase_if(outputs, [&](const auto& entry) { return !tiles.contains(entry.first); });
-  };
-  giveUpOthers(outputs_.summaries), giveUpOthers(outputs_.ground), giveUpOthers(outputs_.features);
-  giveUpOthers(outputs_.points), giveUpOthers(outputs_.cluxels);
-  giveUpOthers(outputs_.labels), giveUpOthers(outputs_.components), giveUpOthers(outputs_.contacts);
+  giveUp(outputs_, [&](const TileKey& tile) { return !tiles.contains(tile); });
   std::size_t points = 0;
   for (const auto& [key, tile] : outputs_.points) points += tile.size();
   if (points > kPointsBeside) dropPoints(), returnFreeMemory();
   RecentScans scans(transaction);
-  OutputReader reader(transaction, scans, outputs_);
+  const EarlierOutputs earlier{earlier_, read_as_before_};
+  OutputReader reader(transaction, scans, outputs_, &earlier);
   reader.readForScene(tiles);
   reader.readGround(around);
 }
@@ -273,7 +291,8 @@ void TileStages::loadPoints(const rdf::ReadTransaction& transaction) {
 
 void TileStages::loadPoints(const rdf::ReadTransaction& transaction, const TileSet& tiles) {
   RecentScans scans(transaction);
-  OutputReader(transaction, scans, outputs_).readPoints(tiles);
+  const EarlierOutputs earlier{earlier_, read_as_before_};
+  OutputReader(transaction, scans, outputs_, &earlier).readPoints(tiles);
 }
 
 perception::Scene TileStages::takeScene(const std::vector<Cloud>& clouds) {

@@ -62,6 +62,8 @@ class TileStages {
     constexpr std::size_t kFew = 400;
     if (outputs_.summaries.size() > kFew) dropAll();
   }
+  /// The tiles of the changes that takeChanges() would return.
+  const perception::TileSet& changedTiles() const { return changes_.tiles; }
   /// All changes since the last call of this function.
   OutputChanges takeChanges() { return std::exchange(changes_, {}); }
   /// Reads what the scene is assembled from, of all tiles. Cost: about 100 ns a cluxel.
@@ -69,6 +71,9 @@ class TileStages {
   /// The same for these tiles alone; others are given up. Of the tiles next to them the ground is read, too.
   void hold(const rdf::ReadTransaction& transaction, const perception::TileSet& tiles,
             const perception::TileSet& around);
+  /// From now on the outputs of `tiles` are read as `earlier` has them, a commit that must outlive their use; null: no
+  /// tile is.
+  void readAsBefore(const rdf::ReadTransaction* earlier, perception::TileSet tiles);
   /// Reads the points of all tiles from the scans, and computes from them what is measured of cluxels. Cost: about
   /// 150 ns a point.
   void loadPoints(const rdf::ReadTransaction& transaction);
@@ -116,6 +121,8 @@ class TileStages {
   Keep keep_;
   std::uint64_t max_points_;
   perception::TileOutputs outputs_;
+  const rdf::ReadTransaction* earlier_ = nullptr;
+  perception::TileSet read_as_before_;
   OutputChanges changes_;
   /// Tiles of which the even ground changed, came or went since the stages of ways were brought up to date.
   perception::TileSet changed_even_;

@@ -16,19 +16,6 @@ namespace cluxel::mapping {
 
 namespace {
 
-void addMap(const MapInputs& inputs, const std::vector<Cloud>& clouds, FactSink& facts) {
-  const rdf::TermId root = facts.iri(rdf::iriOfMapRoot());
-  facts.type(root, rdf::vocabulary::clx("Map"));
-  facts.text(root, "frame", "map");
-  if (!inputs.crs.empty()) facts.text(root, "crs", inputs.crs);
-  if (!inputs.map_origin.isZero()) {
-    facts.number(root, "originX", inputs.map_origin.x());
-    facts.number(root, "originY", inputs.map_origin.y());
-    facts.number(root, "originZ", inputs.map_origin.z());
-  }
-  for (const Cloud& cloud : clouds) facts.link(root, "hasCloud", facts.iri(rdf::iriOfCloud(cloud.id)));
-}
-
 ContentHash causeOf(const Cloud& cloud) {
   const Eigen::Vector3d& place = cloud.T_map_sensor.translation();
   ContentHasher hasher;
@@ -134,6 +121,19 @@ void addGroundPatches(const perception::Scene& scene, FactSink& facts) {
 }
 
 }  // namespace
+
+void addMap(const MapInputs& inputs, const std::vector<Cloud>& clouds, FactSink& facts) {
+  const rdf::TermId root = facts.iri(rdf::iriOfMapRoot());
+  facts.type(root, rdf::vocabulary::clx("Map"));
+  facts.text(root, "frame", "map");
+  if (!inputs.crs.empty()) facts.text(root, "crs", inputs.crs);
+  if (!inputs.map_origin.isZero()) {
+    facts.number(root, "originX", inputs.map_origin.x());
+    facts.number(root, "originY", inputs.map_origin.y());
+    facts.number(root, "originZ", inputs.map_origin.z());
+  }
+  for (const Cloud& cloud : clouds) facts.link(root, "hasCloud", facts.iri(rdf::iriOfCloud(cloud.id)));
+}
 
 void addCloud(const Cloud& cloud, FactSink& facts) {
   if (!facts.beginUnit({cloud.id, Facet::Self}, causeOf(cloud))) return;

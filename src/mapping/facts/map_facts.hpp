@@ -44,6 +44,8 @@ struct ObservedMap {
 void addSceneFacts(const MapInputs& inputs, const std::vector<Cloud>& clouds, const perception::Scene& scene,
                    FactSink& facts);
 
+/// The facts about the map itself.
+void addMap(const MapInputs& inputs, const std::vector<Cloud>& clouds, FactSink& facts);
 void addCloud(const Cloud& cloud, FactSink& facts);
 /// The facts of a primitive and its relations to others.
 void addPrimitive(const perception::Scene& scene, perception::PrimitiveIndex number, FactSink& facts);

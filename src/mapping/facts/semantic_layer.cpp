@@ -75,6 +75,13 @@ void writeOntology(rdf::WriteTransaction& transaction, const MapInputs& inputs) 
   writer.flush();
 }
 
+void writeMapFacts(rdf::WriteTransaction& transaction, const MapInputs& inputs) {
+  FactSink facts(transaction, rdf::vocabulary::kGraphObserved, FactsOf::Collected);
+  addMap(inputs, {}, facts);
+  for (const rdf::QuadIds& fact : facts.take()) facts.writer().add(fact);
+  facts.writer().flush();
+}
+
 void writeObjectsSoFar(rdf::WriteTransaction& transaction, const MapInputs& inputs, const std::vector<Cloud>& clouds,
                        const perception::Scene& scene, const TileStages& stages, const WayGraph& ways,
                        std::span<const rules::SemanticObject> objects) {

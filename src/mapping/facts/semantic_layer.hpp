@@ -30,6 +30,8 @@ ParsedInputs parseInputs(const MapInputs& inputs);
 
 /// Replaces graph ontology by the inputs' ontology.
 void writeOntology(rdf::WriteTransaction& transaction, const MapInputs& inputs);
+/// Adds to graph observed what is told of the map itself.
+void writeMapFacts(rdf::WriteTransaction& transaction, const MapInputs& inputs);
 /// Replaces the graphs observed and inferred by what a query of the reasoning stage may see: the scene and `objects`,
 /// those of the classes decided so far.
 void writeObjectsSoFar(rdf::WriteTransaction& transaction, const MapInputs& inputs, const std::vector<Cloud>& clouds,

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What changed in tiles that were there is decided with the first strip of new tiles.
+// What changed in tiles that were there is decided with the strip in which they lie; until then they count as they
+// were.
 #include "mapping/strips/growth_update.hpp"
 
 #include <algorithm>
@@ -8,12 +9,14 @@
 
 #include "base/free_memory.hpp"
 #include "mapping/clouds/scan_store.hpp"
+#include "mapping/damaged_map.hpp"
 #include "mapping/facts/semantic_layer.hpp"
 #include "mapping/layers/stored_layers.hpp"
 #include "mapping/map_tables.hpp"
 #include "mapping/statements/statement_facts.hpp"
 #include "mapping/strips/map_strips.hpp"
 #include "mapping/strips/whole_update.hpp"
+#include "perception/segments/summary_tile.hpp"
 
 namespace cluxel::mapping {
 
@@ -25,26 +28,35 @@ using perception::TileSet;
 class GrowthUpdate {
  public:
   GrowthUpdate(const LayerWork& work, const OutputChanges& changes, const SemanticState& former)
-      : work_(work), transaction_(work.transaction), changes_(changes), all_(storedTiles(work.transaction)) {
+      : work_(work),
+        transaction_(work.transaction),
+        before_(work.transaction.before()),
+        changes_(changes),
+        all_(storedTiles(work.transaction)) {
     params_.max_window_share = 2;  // a window never gives way to the whole map
     for (const auto& [tile, summary] : changes.former_summaries)
       if (!summary && all_.contains(tile)) new_.insert(tile);
-    const std::uint64_t tiles_before = std::max<std::uint64_t>(1, all_.size() - new_.size());
-    new_cluxels_ = former.cluxels * new_.size() / tiles_before;
+    for (const TileKey& tile : changes.tiles)
+      (all_.contains(tile) && !new_.contains(tile) ? other_ : gone_).insert(tile);
+    gone_ = without(std::move(gone_), new_);
+    if (!new_.empty()) cluxels_ = cluxelsIn(new_) + cluxelsIn(other_);
     strip_.told_clouds = former.clouds;
+    strip_.keeps_lists = params_.lists_objects;
   }
+  GrowthUpdate(const GrowthUpdate&) = delete;
+  GrowthUpdate& operator=(const GrowthUpdate&) = delete;
+  ~GrowthUpdate() { work_.stages.readAsBefore(nullptr, {}); }
 
-  bool isLarge() const { return !new_.empty() && new_cluxels_ > params_.whole_cluxels; }
+  bool isLarge() const { return cluxels_ > params_.whole_cluxels; }
 
   std::optional<SemanticUpdate> run() {
     const std::vector<ContentHash> wide = wideObjects();
-    strip_.shown = without(all_, new_);
-    strip_.keeps_lists = true;
     SemanticUpdate update;
     bool is_first = true;
-    for (const TileSet& tiles : layerStripsOf(transaction_, new_, new_cluxels_, params_.whole_cluxels)) {
+    const TileSet changed = perception::unionOf(TileSet(new_), other_);
+    for (const TileSet& tiles : layerStripsOf(transaction_, changed, cluxels_, params_.whole_cluxels)) {
       if (work_.check) work_.check(0);
-      auto decided = decide(tiles, is_first);
+      auto decided = decide(tiles);
       if (!decided && is_first) return std::nullopt;
       if (!decided) return decideRest();
       is_first = false;
@@ -63,30 +75,56 @@ class GrowthUpdate {
   }
 
  private:
-  std::optional<SemanticUpdate> decide(const TileSet& tiles, bool is_first) {
-    strip_.shown.insert(tiles.begin(), tiles.end());
-    strip_.anew = perception::withRing(tiles, strip_.shown);
+  std::uint64_t cluxelsIn(const TileSet& tiles) const {
+    std::uint64_t cluxels = 0;
+    for (const TileKey& tile : tiles)
+      if (const auto block = transaction_.block(tables::kSummaries, tables::keyOf(tile)))
+        cluxels += perception::cluxelsIn(*block);
+    return cluxels;
+  }
+
+  /// Shows `tiles` as they are now. Tiles beside them that are still as before would not fit: they are hidden until it
+  /// is their turn.
+  std::optional<SemanticUpdate> decide(const TileSet& tiles) {
+    const TileSet other = without(TileSet(other_), tiles), fresh = without(TileSet(new_), tiles);
+    TileSet settled = perception::unionOf(TileSet(settled_), tiles), hidden;
+    for (const TileKey& tile : perception::withRing(settled, other)) hidden.insert(tile);
+    hidden = without(std::move(hidden), settled);
+    strip_.shown = without(without(TileSet(all_), fresh), hidden);
     OutputChanges changes;
-    changes.tiles = strip_.anew;
-    for (const TileKey& tile : tiles) changes.former_summaries.emplace(tile, std::nullopt);
-    if (is_first) {
-      for (const TileKey& tile : changes_.tiles)
-        if (!new_.contains(tile)) changes.tiles.insert(tile);
-      for (const auto& [tile, summary] : changes_.former_summaries)
-        if (!new_.contains(tile)) changes.former_summaries.emplace(tile, summary);
-    }
+    for (const TileKey& tile : tiles) noteChange(tile, new_.contains(tile) || hidden_.contains(tile), changes);
+    for (const TileKey& tile : without(TileSet(hidden), hidden_)) noteHidden(tile, changes);
+    if (settled_.empty())
+      for (const TileKey& tile : gone_) noteChange(tile, false, changes);
+    strip_.anew = perception::withRing(perception::unionOf(TileSet(tiles), hidden), strip_.shown);
+    changes.tiles.insert(strip_.anew.begin(), strip_.anew.end());
+    work_.stages.readAsBefore(&before_, other);
     const LayerWork work{work_.transaction, work_.parsed, work_.stages, params_, work_.sink, work_.check};
     auto decided = updateAround(work, changes, ChangedInputs::Scans, nullptr, &strip_);
     if (!decided) return std::nullopt;
-    for (const TileKey& tile : tiles) new_.erase(tile);
+    other_ = other, new_ = fresh, settled_ = std::move(settled), hidden_ = std::move(hidden);
     return decided;
+  }
+
+  void noteChange(const TileKey& tile, bool was_absent, OutputChanges& changes) const {
+    changes.tiles.insert(tile);
+    if (was_absent)
+      changes.former_summaries.emplace(tile, std::nullopt);
+    else if (const auto former = changes_.former_summaries.find(tile); former != changes_.former_summaries.end())
+      changes.former_summaries.insert(*former);
+  }
+
+  void noteHidden(const TileKey& tile, OutputChanges& changes) const {
+    changes.tiles.insert(tile);
+    changes.former_summaries.emplace(tile, std::string(requiredBlock(before_, tables::kSummaries, tile)));
   }
 
   /// A strip cannot be decided alone: the whole map is.
   SemanticUpdate decideRest() {
+    work_.stages.readAsBefore(nullptr, {});
     OutputChanges rest;
-    rest.tiles = new_;
-    for (const TileKey& tile : new_) rest.former_summaries.emplace(tile, std::nullopt);
+    for (const TileKey& tile : new_) noteChange(tile, true, rest);
+    for (const TileKey& tile : other_) noteChange(tile, hidden_.contains(tile), rest);
     SemanticUpdate update = updateAll(work_, rest);
     difference_.add(std::exchange(update.before, {}), std::exchange(update.after, {}));
     return withLists(std::move(update));
@@ -111,9 +149,15 @@ class GrowthUpdate {
 
   const LayerWork& work_;
   rdf::WriteTransaction& transaction_;
+  rdf::ReadTransaction before_;
   const OutputChanges& changes_;
-  TileSet all_, new_;  ///< of the map, and those that are not shown yet
-  std::uint64_t new_cluxels_ = 0;
+  TileSet all_;                ///< of the map
+  TileSet new_;                ///< that are not shown yet
+  TileSet other_;              ///< that were there and have other outputs now: so far they count as they were
+  TileSet gone_;               ///< that were there
+  TileSet settled_;            ///< that are shown as they are now
+  TileSet hidden_;             ///< of the other ones: those beside settled ones
+  std::uint64_t cluxels_ = 0;  ///< of new and other tiles
   UpdateParams params_ = work_.params;
   MapStrip strip_;
   ObjectDifference difference_;
@@ -122,7 +166,7 @@ class GrowthUpdate {
 }  // namespace
 
 std::optional<SemanticUpdate> updateByGrowth(const LayerWork& work, const OutputChanges& changes) {
-  if (changes.has_copied_map || !canBeInStrips(work)) return std::nullopt;
+  if (changes.has_copied_map || !work.params.is_first_of_commit || !canBeInStrips(work)) return std::nullopt;
   const std::optional<SemanticState> former = storedSemanticState(work.transaction);
   if (!former || former->cluxels == 0) return std::nullopt;
   GrowthUpdate growth(work, changes, *former);

@@ -16,6 +16,7 @@
 #include "mapping/strips/map_strips.hpp"
 #include "mapping/window/former_objects.hpp"
 #include "mapping/window/map_window.hpp"
+#include "perception/segments/summary_tile.hpp"
 #include "rdf/vocabulary.hpp"
 #include "rules/decide/local_reach.hpp"
 
@@ -32,17 +33,22 @@ void eraseAll(rdf::WriteTransaction& transaction, std::string_view table) {
   for (const std::string& key : keys) transaction.eraseBlock(table, key);
 }
 
-/// Of the map, told by those that its former tiles had.
-std::uint64_t likelyCluxels(const rdf::ReadTransaction& transaction, const SemanticState& former) {
-  std::uint64_t tiles_before = 0;
-  transaction.forEachBlock(tables::kTileLayers, "", [&](std::string_view, std::string_view) { ++tiles_before; });
-  return former.cluxels * storedTiles(transaction).size() / std::max<std::uint64_t>(1, tiles_before);
+std::uint64_t storedCluxels(const rdf::ReadTransaction& transaction) {
+  std::uint64_t cluxels = 0;
+  for (const TileKey& tile : storedTiles(transaction))
+    if (const auto block = transaction.block(tables::kSummaries, tables::keyOf(tile)))
+      cluxels += perception::cluxelsIn(*block);
+  return cluxels;
 }
 
 class StripUpdate {
  public:
-  StripUpdate(const LayerWork& work, SemanticState former)
-      : work_(work), transaction_(work.transaction), former_(std::move(former)), all_(storedTiles(work.transaction)) {
+  StripUpdate(const LayerWork& work, SemanticState former, std::uint64_t cluxels)
+      : work_(work),
+        transaction_(work.transaction),
+        former_(std::move(former)),
+        cluxels_(cluxels),
+        all_(storedTiles(work.transaction)) {
     params_.max_window_share = 2;  // a window never gives way to the whole map
   }
 
@@ -84,7 +90,7 @@ class StripUpdate {
   const rdf::ReadTransaction& reading() const { return transaction_; }
 
   std::vector<TileSet> strips() const {
-    return layerStripsOf(transaction_, all_, likelyCluxels(transaction_, former_), work_.params.whole_cluxels);
+    return layerStripsOf(transaction_, all_, cluxels_, work_.params.whole_cluxels);
   }
 
   /// Nothing of the map counts any more. Layers and rows stay where they are until they are written anew, because most
@@ -140,6 +146,7 @@ class StripUpdate {
   const LayerWork& work_;
   rdf::WriteTransaction& transaction_;
   SemanticState former_;
+  std::uint64_t cluxels_;
   TileSet all_;
   UpdateParams params_ = work_.params;
   std::set<ContentHash> primitives_;  ///< in tiles that are shown
@@ -156,16 +163,20 @@ bool makesWideObjectsButGround(const rules::RuleSet& rules) {
 }
 
 std::optional<SemanticUpdate> updateInStrips(const LayerWork& work) {
-  std::optional<SemanticState> former = storedSemanticState(work.transaction);
-  if (!former || !canBeInStrips(work) || likelyCluxels(work.transaction, *former) <= work.params.whole_cluxels)
-    return std::nullopt;
-  const MapInputs inputs = storedInputs(work.transaction);
-  if (inputs.crs != work.parsed.inputs.crs || inputs.map_origin != work.parsed.inputs.map_origin) return std::nullopt;
+  const std::optional<SemanticState> former = storedSemanticState(work.transaction);
+  if (!canBeInStrips(work)) return std::nullopt;
+  const std::uint64_t cluxels = storedCluxels(work.transaction);
+  if (cluxels <= work.params.whole_cluxels) return std::nullopt;
+  if (former) {
+    const MapInputs inputs = storedInputs(work.transaction);
+    if (inputs.crs != work.parsed.inputs.crs || inputs.map_origin != work.parsed.inputs.map_origin) return std::nullopt;
+  } else {
+    writeMapFacts(work.transaction, work.parsed.inputs);
+  }
   writeOntology(work.transaction, work.parsed.inputs);
-  auto update = StripUpdate(work, *std::move(former)).run();
-  if (update)
-    update->after = storedMembers(work.transaction);
-  else
+  auto update = StripUpdate(work, former.value_or(SemanticState{}), cluxels).run();
+  if (update && work.params.lists_objects) update->after = storedMembers(work.transaction);
+  if (!update)
     for (const std::string_view table : {tables::kTileLayers, tables::kObjects}) eraseAll(work.transaction, table);
   return update;
 }
@@ -176,7 +187,7 @@ SemanticUpdate updateAtOnce(const LayerWork& work) {
   update.tiles_decided = storedTiles(work.transaction).size();
   SemanticLayer layer =
       writeSemanticLayer(work.transaction, work.parsed, work.stages, work.params.threads, work.sink, work.check);
-  update.after = membersOf(layer.objects, layer.scene.cluxels);
+  if (work.params.lists_objects) update.after = membersOf(layer.objects, layer.scene.cluxels);
   update.objects = layer.objects.size();
   update.cluxels = layer.scene.cluxels.size(), update.primitives = layer.scene.primitives.size();
   update.statements = std::move(layer.statements);
@@ -193,7 +204,8 @@ bool canBeInStrips(const LayerWork& work) {
 }
 
 SemanticUpdate updateAll(const LayerWork& work, const OutputChanges& changes) {
-  std::vector<ObjectMembers> before = formerObjects(work.transaction, changes);
+  std::vector<ObjectMembers> before;
+  if (work.params.lists_objects) before = formerObjects(work.transaction, changes);
   std::optional<SemanticUpdate> update = updateInStrips(work);
   if (!update) update = updateAtOnce(work);
   update->before = std::move(before);

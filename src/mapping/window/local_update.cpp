@@ -249,7 +249,7 @@ class LocalUpdate {
     std::vector<rules::SemanticObject> made = decision.objects;
     std::erase_if(made, [](const rules::SemanticObject& object) { return object.is_class_wide; });
     update.objects = before_.objects + made.size() - decision.replaced.size();
-    if (strip_ == nullptr || strip_->keeps_lists) {
+    if (strip_ == nullptr ? params_.lists_objects : strip_->keeps_lists) {
       update.before = replacedObjects(window, decision);
       update.after = membersOf(made, window.scene.cluxels);
       keepDifferent(update.before, update.after);

@@ -40,6 +40,8 @@ struct UpdateParams {
   double max_window_share = 0.6;
   /// A map of more cluxels, of which all is to be decided, is decided strip by strip.
   std::uint64_t whole_cluxels = 1'500'000;
+  bool lists_objects = true;       ///< SemanticUpdate tells the objects that differ
+  bool is_first_of_commit = true;  ///< the layers are as the commit before has them
 };
 
 /// Takes the changes of `stages`. Stores everything but inputs and history.

@@ -153,6 +153,12 @@ SummaryTile seedsFromBytes(std::string_view bytes) {
   return tile;
 }
 
+std::size_t cluxelsIn(std::string_view bytes) {
+  TileReader reader(bytes, "SUMM", 1);
+  reader.getMany<scan::ScanId>();
+  return reader.getMany<std::uint32_t>().size();
+}
+
 SummaryTile summaryTileFromBytes(std::string_view bytes) {
   TileReader reader(bytes, "SUMM", 1);
   SummaryTile tile = readSeeds(reader);

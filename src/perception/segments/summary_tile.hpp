@@ -47,5 +47,7 @@ std::string toBytes(const SummaryTile& tile);
 SummaryTile summaryTileFromBytes(std::string_view bytes);
 /// Reads only key, scans, seeds and means; all else is empty.
 SummaryTile seedsFromBytes(std::string_view bytes);
+/// How many cluxels the bytes have.
+std::size_t cluxelsIn(std::string_view bytes);
 
 }  // namespace cluxel::perception

@@ -68,6 +68,8 @@ class WriteTransaction : public ReadTransaction {
   void putBlock(std::string_view table, std::string_view key, std::string_view bytes);
   /// False when the block holds these bytes already; then nothing is written.
   bool putIfDifferent(std::string_view table, std::string_view key, std::string_view bytes);
+  /// A snapshot of the commit on which it builds.
+  ReadTransaction before() const;
   bool eraseBlock(std::string_view table, std::string_view key);  ///< false when the block does not exist
   /// How many threads may sort and merge what is written; the outcome is the same. One, unless it is told.
   void useThreads(unsigned threads);

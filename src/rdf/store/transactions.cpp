@@ -276,6 +276,10 @@ void WriteTransaction::useThreads(unsigned threads) {
   impl().threads = threads;
 }
 
+ReadTransaction WriteTransaction::before() const {
+  return impl().environment->read();
+}
+
 std::uint64_t ReadTransaction::commitNumber() const {
   return mdb_txn_id(impl_->live()) - (impl_->writing ? 1 : 0);
 }
