@@ -45,7 +45,8 @@ auto changed(py::object progress, py::object note, const Change& change) {
 }
 
 MapChanges extend(Map& map, const ChangePaths& scans, const std::optional<std::filesystem::path>& poses,
-                  unsigned threads, std::uint64_t batch_points, bool dry_run, py::object progress, py::object note) {
+                  unsigned threads, std::optional<std::uint64_t> batch_points, bool dry_run, py::object progress,
+                  py::object note) {
   const ChangeOptions options{poses.value_or(std::filesystem::path()), threads, batch_points, dry_run};
   return changed(std::move(progress), std::move(note),
                  [&](ProgressSink& sink) { return map.extend(listOfChanged(scans), options, sink); });
@@ -53,13 +54,13 @@ MapChanges extend(Map& map, const ChangePaths& scans, const std::optional<std::f
 
 MapChanges retract(Map& map, const std::vector<std::string>& clouds, unsigned threads, bool dry_run,
                    py::object progress, py::object note) {
-  const ChangeOptions options{{}, threads, ChangeOptions().batch_points, dry_run};
+  const ChangeOptions options{{}, threads, {}, dry_run};
   return changed(std::move(progress), std::move(note),
                  [&](ProgressSink& sink) { return map.retract(clouds, options, sink); });
 }
 
-MapChanges repose(Map& map, const std::map<std::string, Matrix>& poses, unsigned threads, std::uint64_t batch_points,
-                  bool dry_run, py::object progress, py::object note) {
+MapChanges repose(Map& map, const std::map<std::string, Matrix>& poses, unsigned threads,
+                  std::optional<std::uint64_t> batch_points, bool dry_run, py::object progress, py::object note) {
   std::vector<CloudPose> given;
   for (const auto& [cloud, matrix] : poses) {
     if (matrix.ndim() != 2 || matrix.shape(0) != 4 || matrix.shape(1) != 4)
@@ -74,7 +75,7 @@ MapChanges repose(Map& map, const std::map<std::string, Matrix>& poses, unsigned
 }
 
 Map merge(const std::vector<std::filesystem::path>& maps, const std::filesystem::path& target, unsigned threads,
-          std::uint64_t batch_points, py::object progress, py::object note) {
+          std::optional<std::uint64_t> batch_points, py::object progress, py::object note) {
   const ChangeOptions options{{}, threads, batch_points, false};
   return changed(std::move(progress), std::move(note),
                  [&](ProgressSink& sink) { return Map::merge(maps, target, options, sink); });
@@ -106,21 +107,20 @@ void bindValues(py::module_& module) {
 void bindChanges(py::module_& module, py::class_<Map>& map) {
   bindValues(module);
   map.def("extend", &extend, py::arg("scans"), py::kw_only(), py::arg("poses") = py::none(), py::arg("threads") = 0U,
-          py::arg("batch_points") = ChangeOptions().batch_points, py::arg("dry_run") = false,
-          py::arg("progress") = py::none(), py::arg("note") = py::none(),
+          py::arg("batch_points") = py::none(), py::arg("dry_run") = false, py::arg("progress") = py::none(),
+          py::arg("note") = py::none(),
           "Adds scans: the map is then the one that build() makes from all scans. Scans that are there with the same\n"
           "pose are passed over. dry_run: tells what would change, and writes nothing. Gives MapChanges.");
   map.def("retract", &retract, py::arg("clouds"), py::kw_only(), py::arg("threads") = 0U, py::arg("dry_run") = false,
           py::arg("progress") = py::none(), py::arg("note") = py::none(),
           "Removes scans, named by id (four digits or more), source path or file name. Gives MapChanges.");
   map.def("repose", &repose, py::arg("poses"), py::kw_only(), py::arg("threads") = 0U,
-          py::arg("batch_points") = ChangeOptions().batch_points, py::arg("dry_run") = false,
-          py::arg("progress") = py::none(), py::arg("note") = py::none(),
+          py::arg("batch_points") = py::none(), py::arg("dry_run") = false, py::arg("progress") = py::none(),
+          py::arg("note") = py::none(),
           "Gives scans other poses, batch by batch. poses: dict from cloud, named as in retract(), to the pose of the\n"
           "sensor in the map, an array of shape (4, 4) [m]. Gives MapChanges.");
   module.def("merge", &merge, py::arg("maps"), py::arg("target"), py::kw_only(), py::arg("threads") = 0U,
-             py::arg("batch_points") = ChangeOptions().batch_points, py::arg("progress") = py::none(),
-             py::arg("note") = py::none(),
+             py::arg("batch_points") = py::none(), py::arg("progress") = py::none(), py::arg("note") = py::none(),
              "Merges maps, all in the frame of the first, into the new file `target`, and opens it.");
 }
 

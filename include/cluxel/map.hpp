@@ -33,11 +33,11 @@ struct BuildOptions {
   /// The folder with ontology, rules, queries, models and labels. Empty: the variable CLUXEL_HOME, else share/cluxel of
   /// the installation of this library, else the checkout it was built in.
   std::filesystem::path home;
-  unsigned threads = 0;                    ///< 0: one per processor; the map does not depend on it
-  std::uint64_t batch_points = 6'000'000;  ///< scans are committed in batches of about this many points; at least 1
-  bool force = false;                      ///< replace a finished map; the operator's statements are kept
-  bool drop_statements = false;            ///< with `force`: drop the operator's statements too
-  bool refine_poses = false;               ///< register the scans with each other first
+  unsigned threads = 0;                     ///< 0: one per processor; the map does not depend on it
+  std::uint64_t batch_points = 70'000'000;  ///< scans are committed in batches of about this many points; at least 1
+  bool force = false;                       ///< replace a finished map; the operator's statements are kept
+  bool drop_statements = false;             ///< with `force`: drop the operator's statements too
+  bool refine_poses = false;                ///< register the scans with each other first
 };
 
 /// Limits and parameters of a query; 0 means no limit.

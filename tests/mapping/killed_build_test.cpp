@@ -2,6 +2,7 @@
 // A build, a watch or a compaction that is killed at any moment leaves an exact map; the same command finishes it.
 #include "base/file_bytes.hpp"
 #include "cluxel/error.hpp"
+#include "mapping/build/early_commit.hpp"
 #include "mapping/build/work_file.hpp"
 #include "mapping/change/folder_watch.hpp"
 #include "mapping/change/map_compaction.hpp"
@@ -16,6 +17,7 @@ namespace {
 class KilledBuild : public KilledChange {
  protected:
   unsigned threads() const { return params().threads; }
+  std::uint64_t stagePoints() const { return params().stage_points; }
 };
 
 TEST_F(KilledBuild, GoesOn) {
@@ -24,10 +26,61 @@ TEST_F(KilledBuild, GoesOn) {
   expectExact([&] { fs::remove(map()); },
               [&](ProgressSink& sink) {
                 if (committedText(map()) == all) return;  // a finished map is not built again
-                buildMap(scansOf(campus->files()), *inputs, map(), {.threads = threads(), .batch_points = 1}, sink);
+                buildMap(scansOf(campus->files()), *inputs, map(),
+                         {.threads = threads(), .batch_points = 1, .stage_points = stagePoints()}, sink);
               },
               {"", first, two, all}, all, [&] { return committedText(map()); });
   EXPECT_TRUE(MapReader(map()).isFinished());
+}
+
+/// Points and outputs of such a batch are committed before the map.
+TEST_F(KilledBuild, OfOneLargeBatchIsAllOrNothing) {
+  const std::string all = builtText(campus->files(), *inputs);
+  std::size_t left = 0;
+  expectExact([&] { fs::remove(map()); },
+              [&](ProgressSink& sink) {
+                if (committedText(map()) == all) return;
+                if (fs::exists(map())) left += hasEarlyCommit(Environment::open(map(), OpenMode::ReadOnly)->read());
+                buildMap(scansOf(campus->files()), *inputs, map(), {.threads = threads(), .stage_points = 1}, sink);
+              },
+              {"", all}, all, [&] { return committedText(map()); });
+  EXPECT_TRUE(MapReader(map()).isFinished());
+  EXPECT_FALSE(hasEarlyCommit(Environment::open(map(), OpenMode::ReadOnly)->read()));
+  EXPECT_GT(left, 0U) << "no build was killed after an early commit";
+}
+
+TEST_F(KilledBuild, WhatAnEarlyCommitLeavesGoesWithACompaction) {
+  build({file(0)}, map());
+  const std::string before = canonicalText(map());
+  const ChangeParams large{.stage_points = 1};
+  const auto isLeft = [&] { return hasEarlyCommit(Environment::open(map(), OpenMode::ReadOnly)->read()); };
+  for (std::size_t call = 1; !isLeft(); ++call) {
+    rusage usage{};
+    const int status = ended(
+        [&] {
+          KillAt sink(call);
+          extendMap(map(), scansOf({file(1), file(2)}), large, sink);
+        },
+        usage);
+    ASSERT_TRUE(WIFSIGNALED(status)) << "no call of the progress follows an early commit";
+  }
+  EXPECT_TRUE(canonicalText(map()) == before);
+  compactMap(map());
+  EXPECT_FALSE(isLeft());
+  EXPECT_TRUE(canonicalText(map()) == before);
+  extendMap(map(), scansOf({file(1), file(2)}), large, silence());
+  EXPECT_TRUE(canonicalText(map()) == builtText(campus->files(), *inputs));
+}
+
+TEST_F(KilledBuild, AFaultyScanOfALargeBatchLeavesNothing) {
+  build({file(0)}, map());
+  const std::string before = canonicalText(map());
+  const fs::path broken = folder.path() / "broken.pcd";
+  const std::string bytes = readFile(file(2));
+  writeFile(broken, bytes.substr(0, bytes.size() / 2));
+  EXPECT_THROW(extendMap(map(), scansOf({file(1), file(2), broken}), {.stage_points = 1}, silence()), Error);
+  EXPECT_TRUE(canonicalText(map()) == before);
+  EXPECT_FALSE(hasEarlyCommit(Environment::open(map(), OpenMode::ReadOnly)->read()));
 }
 
 TEST_F(KilledBuild, ThatReplacesAMapKeepsTheOldOneToTheEnd) {

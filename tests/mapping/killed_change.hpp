@@ -77,9 +77,13 @@ class KilledChange : public testing::Test {
     buildMap(scansOf(files), *inputs, target, {.force = true}, silence());
   }
 
-  /// In turn with one thread and the whole map, where it is small, and with two threads around the change.
+  /// In turn with one thread and the whole map, where it is small, and with two threads around the change; every third
+  /// time as a large batch, which commits points and outputs early.
   ChangeParams params() const {
-    return moment_ / 2 % 2 == 0 ? ChangeParams{} : ChangeParams{.threads = 2, .max_window_share = 2};
+    ChangeParams params;
+    if (moment_ / 2 % 2 != 0) params.threads = 2, params.max_window_share = 2;
+    if (moment_ % 3 == 1) params.stage_points = 1, params.whole_cluxels = 100;
+    return params;
   }
 
   /// Runs `change` in a process of its own, and returns how that ended.

@@ -70,7 +70,8 @@ inline std::map<std::string, std::string> storedBlocks(const std::filesystem::pa
   for (const std::string_view table :
        {tables::kPoints, tables::kCluxels, tables::kGround, tables::kFeatures, tables::kLabels, tables::kSummaries,
         tables::kEven, tables::kComponents, tables::kContacts, tables::kTileLayers, tables::kObjects,
-        tables::kWideTiles, tables::kPresence, tables::kPassedRays, tables::kOverruled, tables::kStated})
+        tables::kWideTiles, tables::kPresence, tables::kPassedRays, tables::kOverruled, tables::kStated,
+        tables::kScanPoints, tables::kScansToCome})
     transaction.forEachBlock(table, "", [&](std::string_view key, std::string_view bytes) {
       blocks[std::string(table) + "/" + std::string(key)] = std::string(bytes);
     });

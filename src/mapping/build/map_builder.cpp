@@ -13,6 +13,7 @@
 #include "base/utc_time.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/build/build_poses.hpp"
+#include "mapping/build/early_commit.hpp"
 #include "mapping/build/operator_statements.hpp"
 #include "mapping/build/stage_clock.hpp"
 #include "mapping/build/work_file.hpp"
@@ -102,38 +103,65 @@ class MapBuild {
   std::size_t addBatch(std::size_t first) {
     const double started_s = secondsNow();
     StageClock clock(sink_);
-    rdf::WriteTransaction transaction = work_.environment().write();
-    transaction.useThreads(params_.threads);
-    requireOwn(transaction);
+    const BeginBatch begin = [&] {
+      rdf::WriteTransaction begun = work_.environment().write();
+      begun.useThreads(params_.threads);
+      requireOwn(begun);
+      return begun;
+    };
+    rdf::WriteTransaction transaction = begin();
+    eraseEarlyCommit(transaction);
     PointChanges changes;
-    std::uint64_t batch_points = 0;
-    std::size_t next = first, batch_scans = 0;
-    for (; next < scans_.size() && !isFull(batch_points, batch_scans, scans_.size() - next, params_.batch_points);
+    std::uint64_t batch_points = 0, points_to_commit = 0;
+    std::vector<scan::ScanId> added;
+    std::size_t next = first;
+    bool has_later_times = false;  // of known scans
+    for (; next < scans_.size() && !isFull(batch_points, added.size(), scans_.size() - next, params_.batch_points);
          ++next) {
       ReadScan given = reader_.take(next);
       for (const std::string& note : reading_notes_.add(given.reading)) sink_.note(note);
       const std::uint64_t points = given.scan.cloud.point_count;
+      const scan::ScanId id = given.scan.cloud.id;
+      const std::optional<double> time_s = given.scan.cloud.time_s;
+      const std::optional<Cloud> known = storedCloud(transaction, id);
       auto segments = storeScan(transaction, std::move(given.scan));
-      report_.scans_already_there += segments.empty() ? 1 : 0;
-      batch_points += segments.empty() ? 0 : points;
-      batch_scans += segments.empty() ? 0 : 1;
+      if (segments.empty()) {
+        ++report_.scans_already_there;
+        has_later_times = has_later_times || (known && time_s > known->time_s);
+      } else {
+        added.push_back(id);
+        batch_points += points, points_to_commit += points;
+      }
       changes.add(std::move(segments), params_.stage_points);
+      changes.is_alone = !has_later_times;
+      if (changes.isLarge() && changes.is_alone && points_to_commit >= params_.stage_points) {
+        commitPoints(added, transaction, begin);
+        points_to_commit = 0;
+      }
       clock.progress("scans", next + 1, scans_.size());
     }
     if (batch_points > 0 || next == scans_.size())
-      commitBatch(transaction, std::move(changes), next == scans_.size(), started_s, clock);
+      commitBatch({transaction, begin, added}, std::move(changes), next == scans_.size(), started_s, clock);
     return next;
   }
 
-  void commitBatch(rdf::WriteTransaction& transaction, PointChanges changes, bool is_last, double started_s,
-                   StageClock& clock) {
+  struct OpenBatch {
+    rdf::WriteTransaction& transaction;
+    const BeginBatch& begin;
+    const std::vector<scan::ScanId>& scans;
+  };
+
+  void commitBatch(const OpenBatch& batch, PointChanges changes, bool is_last, double started_s, StageClock& clock) {
+    rdf::WriteTransaction& transaction = batch.transaction;
+    const bool commits_early = changes.isLarge() && changes.is_alone;
     stages_.update(transaction, std::move(changes), params_.threads, clock);
+    if (commits_early) commitOutputs(batch.scans, stages_.changedTiles(), transaction, batch.begin);
     stages_.dropPoints();
     returnFreeMemory();
     if (is_last) work_.takeOverStatements(transaction, params_.drop_statements, sink_);
     if (is_last) addOperatorStatements(transaction, params_.statements);
-    const SemanticUpdate layers =
-        updateSemanticLayer(transaction, parsed_, stages_, ChangedInputs::Scans, {.threads = params_.threads}, clock);
+    const SemanticUpdate layers = updateSemanticLayer(transaction, parsed_, stages_, ChangedInputs::Scans,
+                                                      {.threads = params_.threads, .lists_objects = false}, clock);
     if (!is_last) stages_.dropIfMany();
     returnFreeMemory();
     const std::vector<Cloud> clouds = storedClouds(transaction);

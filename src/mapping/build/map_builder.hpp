@@ -9,6 +9,7 @@
 
 #include "cluxel/progress.hpp"
 #include "cluxel/term.hpp"
+#include "mapping/build/batch_size.hpp"
 #include "mapping/build/tile_stages.hpp"
 #include "mapping/map_inputs.hpp"
 #include "scan/scan_set.hpp"
@@ -17,7 +18,7 @@ namespace cluxel::mapping {
 
 struct BuildParams {
   unsigned threads = 1;
-  std::uint64_t batch_points = 6'000'000;     ///< a batch of scans is committed when it holds this many points
+  std::uint64_t batch_points = kBatchPoints;  ///< a batch of scans is committed when it holds this many points
   std::uint64_t stage_points = kStagePoints;  ///< a batch with more goes through the stages in bands
   bool force = false;                         ///< replace a finished map
   bool refine_poses = false;  ///< register the scans first (registerPoses()); otherwise poses that do not fit are noted

@@ -4,6 +4,7 @@
 
 #include "base/file_bytes.hpp"
 #include "cluxel/error.hpp"
+#include "mapping/build/early_commit.hpp"
 #include "mapping/build/operator_statements.hpp"
 #include "mapping/map_tables.hpp"
 #include "mapping/statements/statement.hpp"
@@ -67,7 +68,8 @@ void removeMap(const fs::path& file) {
 }  // namespace
 
 void requireSomething(const rdf::ReadTransaction& transaction, const fs::path& file) {
-  if (!holdsNothing(transaction) || !hasBuildLock(withoutLinks(file))) return;
+  if (!holdsNothing(transaction)) return;
+  if (!hasBuildLock(withoutLinks(file)) && !hasEarlyCommit(transaction)) return;
   throw Error(ErrorKind::StoreUnavailable,
               file.string() +
                   ": holds nothing: the first build of it is running, or was killed before its first "

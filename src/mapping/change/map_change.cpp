@@ -80,6 +80,7 @@ ChangeReport addBy(MapEditor& editor, const scan::ScanSet& scans) {
     }
     additions.finish();
   } catch (...) {
+    additions.drop();
     noteDone(editor, editor.result().scans_added, "added");
     throw;
   }
@@ -182,7 +183,7 @@ ChangeReport movedIn(const fs::path& file, const std::vector<ScanPose>& poses, c
   MapEditor editor(file, params, sink);
   std::optional<rdf::WriteTransaction> transaction(editor.begin());
   const std::vector<Move> moves = movesTo(poses, *transaction);
-  const std::uint64_t batch_points = batchSizeOf(moves, *transaction, params.batch_points);
+  const std::uint64_t batch_points = batchSizeOf(moves, *transaction, params.batch_points.value_or(kStagePoints));
   PointChanges changes;
   std::vector<Cloud> moved;
   std::uint64_t points = 0;

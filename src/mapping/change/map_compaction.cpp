@@ -11,6 +11,7 @@
 #include "base/file_bytes.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/build/build_lock.hpp"
+#include "mapping/build/early_commit.hpp"
 #include "rdf/file/environment.hpp"
 #include "rdf/file/lock_file.hpp"
 #include "rdf/file/map_replacement.hpp"
@@ -64,6 +65,11 @@ void compactMap(const fs::path& map, rdf::CopiedPages pages) {
   const fs::path file = withoutLinks(map), copy = copyOf(map);
   const BuildLock no_build(file);
   const auto environment = rdf::Environment::open(file, rdf::OpenMode::ReadWrite);
+  if (hasEarlyCommit(environment->read())) {  // of a killed command
+    rdf::WriteTransaction transaction = environment->write();
+    eraseEarlyCommit(transaction);
+    transaction.commit();
+  }
   const rdf::WriteTransaction no_other_writer = environment->write();
   removeCopy(copy);  // left by a killed run
   try {

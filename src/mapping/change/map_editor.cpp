@@ -15,6 +15,7 @@
 #include "base/utc_time.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/build/batch_size.hpp"
+#include "mapping/build/early_commit.hpp"
 #include "mapping/build/stage_clock.hpp"
 #include "mapping/change/map_things.hpp"
 #include "mapping/facts/map_history.hpp"
@@ -182,14 +183,17 @@ std::vector<TileSet> MapEditor::partsOfAll(const rdf::ReadTransaction& transacti
   });
 }
 
-SemanticUpdate MapEditor::decide(rdf::WriteTransaction& transaction, PointChanges changes, ProgressSink& sink) {
+SemanticUpdate MapEditor::decide(rdf::WriteTransaction& transaction, PointChanges changes,
+                                 const std::vector<Cloud>& scans, ProgressSink& sink) {
   const ChangedInputs inputs = std::exchange(changed_inputs_, ChangedInputs::Scans);
   if (all_tiles_ && ends_in_tiles_ && rules::localReach(parsed_.rules).reach_m) {
     touched_ = unionOf(std::move(touched_), changes.tiles());
     if (std::vector<TileSet> parts = partsOfAll(transaction, changes.tiles()); parts.size() > 1)
       return decideInParts(transaction, std::move(parts), sink);
   }
+  const bool commits_early = changes.isLarge() && changes.is_alone;
   update(transaction, std::move(changes), sink);
+  if (commits_early) commitOutputs(idsOf(scans), stages_->changedTiles(), transaction, [&] { return begin(); });
   return updateSemanticLayer(transaction, parsed_, *stages_, inputs, layerParams(), sink);
 }
 
@@ -204,6 +208,8 @@ SemanticUpdate MapEditor::decideInParts(rdf::WriteTransaction& transaction, std:
   SemanticUpdate update;
   bool is_local = true;
   std::size_t decided = 0;
+  UpdateParams params = layerParams();
+  params.is_first_of_commit = false;
   for (std::size_t i = 0; i < parts.size(); ++i) {
     noteChanged(stages_->computeAnew(transaction, std::move(parts[i]), params_.threads, sink));
     if (!is_local && i + 1 < parts.size()) {
@@ -211,7 +217,7 @@ SemanticUpdate MapEditor::decideInParts(rdf::WriteTransaction& transaction, std:
       continue;
     }
     update = updateSemanticLayer(transaction, parsed_, *stages_, is_local ? ChangedInputs::Scans : ChangedInputs::Any,
-                                 layerParams(), sink);
+                                 params, sink);
     stages_->dropAll();
     difference.add(std::move(update.before), std::move(update.after));
     is_local = is_local && update.is_local;
@@ -226,7 +232,7 @@ void MapEditor::commit(rdf::WriteTransaction& transaction, const std::string& op
                        const std::vector<Cloud>& scans) {
   const double started_s = secondsNow();
   StageClock clock(sink_);
-  SemanticUpdate layers = decide(transaction, std::move(changes), clock);
+  SemanticUpdate layers = decide(transaction, std::move(changes), scans, clock);
   const bool is_large = layers.tiles_decided > kLargeCommit;
   if (stages_) stages_->dropIfMany();
   returnFreeMemory();

@@ -25,7 +25,9 @@ namespace cluxel::mapping {
 
 struct ChangeParams {
   unsigned threads = 1;
-  std::uint64_t batch_points = 6'000'000;     ///< scans are added in batches of about this many points
+  /// A batch is committed when it holds this many points. Absent: kBatchPoints where scans are added, kStagePoints
+  /// where they move or maps are merged.
+  std::optional<std::uint64_t> batch_points = {};
   bool dry_run = false;                       ///< compute what would change, and write nothing
   std::uint64_t stage_points = kStagePoints;  ///< a batch with more goes through the stages in bands
   bool may_compact = true;                    ///< rewrite the map when the change leaves much free space
@@ -97,7 +99,8 @@ class MapEditor {
  private:
   void readBefore(const rdf::ReadTransaction& transaction);
   /// Brings the stages and what follows from them up to date.
-  SemanticUpdate decide(rdf::WriteTransaction& transaction, PointChanges changes, ProgressSink& sink);
+  SemanticUpdate decide(rdf::WriteTransaction& transaction, PointChanges changes, const std::vector<Cloud>& scans,
+                        ProgressSink& sink);
   SemanticUpdate decideInParts(rdf::WriteTransaction& transaction, std::vector<TileSet> parts, ProgressSink& sink);
   /// All tiles of the map and `more`, in parts that go through the stages at once.
   std::vector<TileSet> partsOfAll(const rdf::ReadTransaction& transaction, const TileSet& more) const;

@@ -284,7 +284,8 @@ class Merge {
   bool isLender(std::size_t number, ScanAdditions& additions) const {
     const MapInputs own = inputsOfResult(), inputs = readers_[number].inputs();
     const std::uint64_t points = readers_[number].summary().points;
-    const bool is_large = points > params_.change.batch_points || points > readers_[base_].summary().points / 8;
+    const bool is_large =
+        points > params_.change.batch_points.value_or(kStagePoints) || points > readers_[base_].summary().points / 8;
     return is_large && isAlike(number) && own.map_origin == inputs.map_origin && own.crs == inputs.crs &&
            differencesOf(own, inputs).empty() &&
            canLendDecisions(additions.transaction(), readers_[number].transaction(), params_.change.max_window_share,
@@ -293,7 +294,7 @@ class Merge {
 
   /// Copies the scans and tiles of a map that fits into one batch. Of others the scans are added one by one.
   void addMap(std::size_t number, ScanAdditions& additions) {
-    if (!isAlike(number) || readers_[number].summary().points > params_.change.batch_points)
+    if (!isAlike(number) || readers_[number].summary().points > params_.change.batch_points.value_or(kStagePoints))
       return addScans(number, additions);
     additions.copy(readers_[number].transaction(), false);
   }

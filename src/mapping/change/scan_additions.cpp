@@ -6,15 +6,23 @@
 #include <iterator>
 #include <utility>
 
+#include "cluxel/error.hpp"
 #include "mapping/build/batch_size.hpp"
+#include "mapping/build/early_commit.hpp"
 #include "mapping/map_tables.hpp"
 #include "mapping/presence/object_rows.hpp"
 #include "mapping/splits_store.hpp"
 
 namespace cluxel::mapping {
 
+void ScanAdditions::begin() {
+  if (transaction_) return;
+  transaction_.emplace(editor_.begin());
+  eraseEarlyCommit(*transaction_);
+}
+
 void ScanAdditions::add(const scan::Scan& scan, std::size_t scans_left) {
-  if (!transaction_) transaction_.emplace(editor_.begin());
+  begin();
   const std::optional<Cloud> known = storedCloud(*transaction_, scan.id);
   auto segments = storeScan(*transaction_, scan);
   if (segments.empty()) {
@@ -24,7 +32,22 @@ void ScanAdditions::add(const scan::Scan& scan, std::size_t scans_left) {
   }
   noteAdded(*storedCloud(*transaction_, scan.id));
   changes_.add(std::move(segments), editor_.params().stage_points);
-  if (!editor_.params().dry_run && isFull(points_, added_.size(), scans_left, editor_.params().batch_points)) finish();
+  points_to_commit_ += added_.back().point_count;
+  commitMany();
+  if (!editor_.params().dry_run &&
+      isFull(points_, added_.size(), scans_left, editor_.params().batch_points.value_or(kBatchPoints)))
+    finish();
+}
+
+bool ScanAdditions::mayCommitEarly() const {
+  return changes_.isLarge() && !has_other_changes_ && !editor_.params().dry_run;
+}
+
+/// Points of many scans are committed early.
+void ScanAdditions::commitMany() {
+  if (!mayCommitEarly() || points_to_commit_ < editor_.params().stage_points) return;
+  commitPoints(idsOf(added_), *transaction_, [&] { return editor_.begin(); });
+  points_to_commit_ = 0;
 }
 
 void ScanAdditions::countOtherTime(const scan::Scan& scan, std::optional<double> before_s,
@@ -71,23 +94,39 @@ void ScanAdditions::copy(const rdf::ReadTransaction& other, bool is_lender) {
   std::set_intersection(own.begin(), own.end(), tiles.begin(), tiles.end(),
                         std::inserter(changes.anew, changes.anew.end()));
   editor_.update(*transaction_, std::move(changes), editor_.sink());
-  if (is_lender || (!editor_.params().dry_run && points_ >= editor_.params().batch_points)) finish();
+  if (is_lender || (!editor_.params().dry_run && points_ >= editor_.params().batch_points.value_or(kStagePoints)))
+    finish();
 }
 
 rdf::WriteTransaction& ScanAdditions::transaction() {
-  if (!transaction_) transaction_.emplace(editor_.begin());
+  begin();
   has_other_changes_ = true;
   return *transaction_;
 }
 
+void ScanAdditions::drop() {
+  transaction_.reset();
+  if (editor_.params().dry_run) return;
+  try {
+    rdf::WriteTransaction transaction = editor_.begin();
+    if (!hasEarlyCommit(transaction)) return;
+    eraseEarlyCommit(transaction);
+    transaction.commit();
+  } catch (const Error& error) {
+    editor_.sink().note(std::string("what the batch has written stays in the file until the next change: ") +
+                        error.what());
+  }
+}
+
 void ScanAdditions::finish() {
   noteOtherTimes();
+  changes_.is_alone = mayCommitEarly();
   if (!added_.empty() || has_other_changes_) editor_.commit(*transaction_, operation_, std::move(changes_), added_);
   editor_.result().scans_added += added_.size();
   transaction_.reset();
   changes_ = {};
   added_.clear();
-  points_ = 0;
+  points_ = points_to_commit_ = 0;
   has_other_changes_ = false;
 }
 

@@ -25,8 +25,14 @@ class ScanAdditions {
   rdf::WriteTransaction& transaction();
   /// Commits the last batch.
   void finish();
+  /// Gives the open batch up, after an error.
+  void drop();
 
  private:
+  void begin();
+  /// Whether only scans are added, and many.
+  bool mayCommitEarly() const;
+  void commitMany();
   void noteAdded(const Cloud& cloud);
   /// A scan that is there may be given with another time.
   void countOtherTime(const scan::Scan& scan, std::optional<double> before_s, std::optional<double> now_s);
@@ -38,6 +44,7 @@ class ScanAdditions {
   PointChanges changes_;
   std::vector<Cloud> added_;
   std::uint64_t points_ = 0;                         ///< of the batch
+  std::uint64_t points_to_commit_ = 0;               ///< of scans that are stored, since the last commit
   std::size_t later_times_ = 0, earlier_times_ = 0;  ///< of known scans in the batch
   bool has_other_changes_ = false;
 };

@@ -164,6 +164,12 @@ std::vector<perception::SceneView> viewsOf(const std::vector<Cloud>& clouds) {
   return views;
 }
 
+std::vector<scan::ScanId> idsOf(const std::vector<Cloud>& clouds) {
+  std::vector<scan::ScanId> ids;
+  for (const Cloud& cloud : clouds) ids.push_back(cloud.id);
+  return ids;
+}
+
 TileSet PointChanges::tiles() const {
   TileSet all = anew;
   for (const auto& [tile, segments] : added) all.insert(tile);

@@ -29,10 +29,14 @@ struct PointChanges {
   /// Another map with the same model and settings. All its scans were copied to this map, and its tiles come with them.
   /// Tiles that both maps have are in `anew`.
   const rdf::ReadTransaction* copied = nullptr;
+  /// Nothing else changes in the transaction, so that a large batch may commit some of what it writes early.
+  bool is_alone = false;
   bool is_lender = false;  ///< what it decided may be taken, too: it has the same inputs (canLendDecisions())
 
   TileSet tiles() const;
   bool hasAdded() const { return !added.empty() || !stored.empty(); }
+  /// Whether there are so many that none stays in memory.
+  bool isLarge() const { return !stored.empty(); }
   /// Adds what a stored scan has. From one and a half times `part_points` points on, none stay in memory.
   void add(ScanSegments segments, std::uint64_t part_points);
 
@@ -80,6 +84,7 @@ scan::Scan storedScan(const rdf::ReadTransaction& transaction, const scan::ScanI
 TileSet storedTiles(const rdf::ReadTransaction& transaction);
 void storeTiles(rdf::WriteTransaction& transaction, const TileSet& tiles);
 
+std::vector<scan::ScanId> idsOf(const std::vector<Cloud>& clouds);
 /// The clouds of the map, ascending by id.
 std::vector<Cloud> storedClouds(const rdf::ReadTransaction& transaction);
 std::optional<Cloud> storedCloud(const rdf::ReadTransaction& transaction, const scan::ScanId& id);

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+// Descriptions of scans wait in a table of their own. Points and outputs without a scan or a tile that the map lists
+// are read by nobody.
+#include "mapping/build/early_commit.hpp"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mapping/clouds/scan_store.hpp"
+#include "mapping/map_tables.hpp"
+
+namespace cluxel::mapping {
+
+namespace {
+
+using perception::TileKey;
+using perception::TileSet;
+
+std::vector<std::string> keysOf(const rdf::ReadTransaction& transaction, std::string_view table) {
+  std::vector<std::string> keys;
+  transaction.forEachBlock(table, "", [&](std::string_view key, std::string_view) { keys.emplace_back(key); });
+  return keys;
+}
+
+void moveBlocks(rdf::WriteTransaction& transaction, std::string_view from, std::string_view to,
+                const std::vector<std::string>& keys) {
+  for (const std::string& key : keys)
+    if (const auto block = transaction.block(from, key)) {
+      const std::string bytes(*block);
+      transaction.eraseBlock(from, key);
+      transaction.putBlock(to, key, bytes);
+    }
+}
+
+/// Outputs of tiles that the map had before and has otherwise now.
+class OtherOutputs {
+ public:
+  OtherOutputs(rdf::WriteTransaction& transaction, const TileSet& changed)
+      : tiles_(storedTiles(transaction)), transaction_(transaction) {
+    const rdf::ReadTransaction before = transaction.before();
+    const TileSet tiles_before = storedTiles(before);
+    for (const TileKey& tile : changed)
+      if (tiles_before.contains(tile))
+        for (const std::string_view table : tables::kStageTables) exchange(before, table, tables::keyOf(tile));
+    storeTiles(transaction, tiles_before);
+  }
+
+  void putBack() {
+    for (const Output& output : outputs_) put(output.table, output.key, output.now);
+    storeTiles(transaction_, tiles_);
+  }
+
+ private:
+  using Bytes = std::optional<std::string>;
+  struct Output {
+    std::string_view table;
+    std::string key;
+    Bytes now;
+  };
+
+  void exchange(const rdf::ReadTransaction& before, std::string_view table, const std::string& key) {
+    const auto bytes = [&](const rdf::ReadTransaction& commit) {
+      const auto block = commit.block(table, key);
+      return block ? Bytes(*block) : std::nullopt;
+    };
+    const Bytes then = bytes(before);
+    Bytes now = bytes(transaction_);
+    if (now == then) return;
+    put(table, key, then);
+    outputs_.push_back({table, key, std::move(now)});
+  }
+
+  void put(std::string_view table, const std::string& key, const Bytes& bytes) {
+    if (bytes)
+      transaction_.putBlock(table, key, *bytes);
+    else
+      transaction_.eraseBlock(table, key);
+  }
+
+  TileSet tiles_;
+  rdf::WriteTransaction& transaction_;
+  std::vector<Output> outputs_;
+};
+
+}  // namespace
+
+void commitPoints(std::span<const scan::ScanId> scans, rdf::WriteTransaction& transaction, const BeginBatch& begin) {
+  std::vector<std::string> keys;
+  for (const scan::ScanId& scan : scans) keys.push_back(tables::keyOf(scan));
+  moveBlocks(transaction, tables::kScans, tables::kScansToCome, keys);
+  transaction.commit();
+  transaction = begin();
+  moveBlocks(transaction, tables::kScansToCome, tables::kScans, keys);
+}
+
+void commitOutputs(std::span<const scan::ScanId> scans, const TileSet& changed, rdf::WriteTransaction& transaction,
+                   const BeginBatch& begin) {
+  OtherOutputs others(transaction, changed);
+  commitPoints(scans, transaction, begin);
+  others.putBack();
+}
+
+bool hasEarlyCommit(const rdf::ReadTransaction& transaction) {
+  return !keysOf(transaction, tables::kScansToCome).empty();
+}
+
+void eraseEarlyCommit(rdf::WriteTransaction& transaction) {
+  const std::vector<std::string> scans = keysOf(transaction, tables::kScansToCome);
+  if (scans.empty()) return;
+  for (const std::string& key : scans) {
+    transaction.eraseBlock(tables::kScansToCome, key);
+    if (!transaction.block(tables::kScans, key)) transaction.eraseBlock(tables::kScanPoints, key);
+  }
+  const TileSet tiles = storedTiles(transaction);
+  for (const std::string_view table : tables::kStageTables)
+    for (const std::string& key : keysOf(transaction, table))
+      if (!tiles.contains(tables::tileOfKey(key))) transaction.eraseBlock(table, key);
+}
+
+}  // namespace cluxel::mapping
