@@ -49,27 +49,70 @@ TEST_F(KilledBuild, OfOneLargeBatchIsAllOrNothing) {
   EXPECT_GT(left, 0U) << "no build was killed after an early commit";
 }
 
-TEST_F(KilledBuild, WhatAnEarlyCommitLeavesGoesWithACompaction) {
-  build({file(0)}, map());
-  const std::string before = canonicalText(map());
-  const ChangeParams large{.stage_points = 1};
-  const auto isLeft = [&] { return hasEarlyCommit(Environment::open(map(), OpenMode::ReadOnly)->read()); };
-  for (std::size_t call = 1; !isLeft(); ++call) {
-    rusage usage{};
-    const int status = ended(
-        [&] {
-          KillAt sink(call);
-          extendMap(map(), scansOf({file(1), file(2)}), large, sink);
-        },
-        usage);
-    ASSERT_TRUE(WIFSIGNALED(status)) << "no call of the progress follows an early commit";
+class EarlyCommitLeft : public KilledChange {
+ protected:
+  bool isLeft() const { return hasEarlyCommit(Environment::open(map(), OpenMode::ReadOnly)->read()); }
+  /// Kills a large batch at the last report of progress before its commit, when the stages are done.
+  void leave(const std::function<void()>& prepare, const Change& change) const {
+    CountCalls counting;
+    prepare();
+    change(counting);
+    bool is_left = false;
+    for (std::size_t call = counting.calls; call > 0 && !is_left; --call) {
+      prepare();
+      rusage usage{};
+      ended(
+          [&] {
+            KillAt sink(call);
+            change(sink);
+          },
+          usage);
+      is_left = isLeft();
+    }
+    ASSERT_TRUE(is_left) << "no report of progress follows an early commit";
   }
-  EXPECT_TRUE(canonicalText(map()) == before);
+  void leaveByExtension() const {
+    leave([&] { build({file(0)}, map()); },
+          [&](ProgressSink& sink) {
+            extendMap(map(), scansOf({file(1), file(2)}), {.stage_points = 1}, sink);
+          });
+  }
+};
+
+TEST_F(EarlyCommitLeft, OfAFirstBuildIsNoMap) {
+  const auto build_all = [&](ProgressSink& sink) {
+    buildMap(scansOf(campus->files()), *inputs, map(), {.stage_points = 1}, sink);
+  };
+  leave([&] { fs::remove(map()); }, build_all);
+  EXPECT_TRUE(isToBuild(map()));
+  EXPECT_THROW(requireSomething(Environment::open(map(), OpenMode::ReadOnly)->read(), map()), Error);
+  build_all(silence());
+  EXPECT_FALSE(isLeft());
+  EXPECT_TRUE(canonicalText(map()) == builtText(campus->files(), *inputs));
+}
+
+TEST_F(EarlyCommitLeft, GoesWithACompaction) {
+  leaveByExtension();
+  EXPECT_TRUE(canonicalText(map()) == builtText({file(0)}, *inputs));
   compactMap(map());
   EXPECT_FALSE(isLeft());
-  EXPECT_TRUE(canonicalText(map()) == before);
-  extendMap(map(), scansOf({file(1), file(2)}), large, silence());
-  EXPECT_TRUE(canonicalText(map()) == builtText(campus->files(), *inputs));
+  EXPECT_TRUE(canonicalText(map()) == builtText({file(0)}, *inputs));
+}
+
+TEST_F(EarlyCommitLeft, IsNotTakenForOutputsOfTheMap) {
+  leaveByExtension();
+  extendMap(map(), scansOf({file(1)}), {}, silence());
+  EXPECT_FALSE(isLeft());
+  EXPECT_TRUE(canonicalText(map()) == builtText({file(0), file(1)}, *inputs));
+  leaveByExtension();
+  Eigen::Isometry3d pose = scansOf({file(1)}).file(0).T_map_sensor;  // where the killed command had another scan
+  const ScanId id = scansOf({file(0)}).load(0).id;
+  moveScans(map(), {{id, pose}}, {}, silence());
+  EXPECT_FALSE(isLeft());
+  const std::string moved = canonicalText(map());
+  build({file(0)}, map());
+  moveScans(map(), {{id, pose}}, {}, silence());
+  EXPECT_TRUE(canonicalText(map()) == moved);
 }
 
 TEST_F(KilledBuild, AFaultyScanOfALargeBatchLeavesNothing) {

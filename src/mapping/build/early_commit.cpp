@@ -33,22 +33,21 @@ void moveBlocks(rdf::WriteTransaction& transaction, std::string_view from, std::
     }
 }
 
-/// Outputs of tiles that the map had before and has otherwise now.
+/// Outputs of tiles that the map had before and has otherwise now, and the list of its tiles. They are as before until
+/// they are put back.
 class OtherOutputs {
  public:
-  OtherOutputs(rdf::WriteTransaction& transaction, const TileSet& changed)
-      : tiles_(storedTiles(transaction)), transaction_(transaction) {
+  OtherOutputs(rdf::WriteTransaction& transaction, const TileSet& changed) : transaction_(transaction) {
     const rdf::ReadTransaction before = transaction.before();
     const TileSet tiles_before = storedTiles(before);
     for (const TileKey& tile : changed)
       if (tiles_before.contains(tile))
         for (const std::string_view table : tables::kStageTables) exchange(before, table, tables::keyOf(tile));
-    storeTiles(transaction, tiles_before);
+    exchange(before, tables::kMeta, std::string(tables::kTilesKey));
   }
 
   void putBack() {
     for (const Output& output : outputs_) put(output.table, output.key, output.now);
-    storeTiles(transaction_, tiles_);
   }
 
  private:
@@ -78,7 +77,6 @@ class OtherOutputs {
       transaction_.eraseBlock(table, key);
   }
 
-  TileSet tiles_;
   rdf::WriteTransaction& transaction_;
   std::vector<Output> outputs_;
 };

@@ -146,17 +146,23 @@ void MapEditor::reopen() {
 
 rdf::WriteTransaction MapEditor::begin() {
   if (std::exchange(reopens_, false)) reopen();
+  rdf::WriteTransaction transaction = beginAgain();
+  eraseEarlyCommit(transaction);
+  if (!std::exchange(has_begun_, true)) readBefore(transaction);  // an update may have come in between
+  if (names_at_end_ && !std::exchange(has_own_before_, true)) {
+    const std::vector<ObjectMembers> own = storedMembers(transaction);
+    report_.before.insert(report_.before.begin(), own.begin(), own.end());
+  }
+  return transaction;
+}
+
+rdf::WriteTransaction MapEditor::beginAgain() {
   rdf::WriteTransaction transaction = environment_->write();
   const auto state = storedState(transaction);
   if (!state || !state->is_finished || state->inputs_hash != inputs_hash_)
     throw Error(ErrorKind::StoreUnavailable,
                 environment_->file().string() + ": another program has changed it meanwhile; run the command again");
   transaction.useThreads(params_.threads);
-  if (!std::exchange(has_begun_, true)) readBefore(transaction);  // an update may have come in between
-  if (names_at_end_ && !std::exchange(has_own_before_, true)) {
-    const std::vector<ObjectMembers> own = storedMembers(transaction);
-    report_.before.insert(report_.before.begin(), own.begin(), own.end());
-  }
   return transaction;
 }
 
@@ -193,7 +199,7 @@ SemanticUpdate MapEditor::decide(rdf::WriteTransaction& transaction, PointChange
   }
   const bool commits_early = changes.isLarge() && changes.is_alone;
   update(transaction, std::move(changes), sink);
-  if (commits_early) commitOutputs(idsOf(scans), stages_->changedTiles(), transaction, [&] { return begin(); });
+  if (commits_early) commitOutputs(idsOf(scans), stages_->changedTiles(), transaction, [&] { return beginAgain(); });
   return updateSemanticLayer(transaction, parsed_, *stages_, inputs, layerParams(), sink);
 }
 

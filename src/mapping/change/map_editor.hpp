@@ -70,7 +70,10 @@ class MapEditor {
   /// commit as other inputs are set.
   void setInputs(ParsedInputs inputs);
 
+  /// What a killed command has committed early is gone in the transaction.
   rdf::WriteTransaction begin();
+  /// Begins anew after an early commit.
+  rdf::WriteTransaction beginAgain();
   /// Brings the stages up to date after points changed, so that these can be given in several parts before commit().
   void update(rdf::WriteTransaction& transaction, PointChanges changes, ProgressSink& sink);
   /// Brings all layers up to date after points changed, and commits unless this is a dry run. `operation` names the

@@ -3,10 +3,10 @@
 #include "mapping/change/scan_additions.hpp"
 
 #include <algorithm>
+#include <exception>
 #include <iterator>
 #include <utility>
 
-#include "cluxel/error.hpp"
 #include "mapping/build/batch_size.hpp"
 #include "mapping/build/early_commit.hpp"
 #include "mapping/map_tables.hpp"
@@ -15,14 +15,8 @@
 
 namespace cluxel::mapping {
 
-void ScanAdditions::begin() {
-  if (transaction_) return;
-  transaction_.emplace(editor_.begin());
-  eraseEarlyCommit(*transaction_);
-}
-
 void ScanAdditions::add(const scan::Scan& scan, std::size_t scans_left) {
-  begin();
+  if (!transaction_) transaction_.emplace(editor_.begin());
   const std::optional<Cloud> known = storedCloud(*transaction_, scan.id);
   auto segments = storeScan(*transaction_, scan);
   if (segments.empty()) {
@@ -46,7 +40,7 @@ bool ScanAdditions::mayCommitEarly() const {
 /// Points of many scans are committed early.
 void ScanAdditions::commitMany() {
   if (!mayCommitEarly() || points_to_commit_ < editor_.params().stage_points) return;
-  commitPoints(idsOf(added_), *transaction_, [&] { return editor_.begin(); });
+  commitPoints(idsOf(added_), *transaction_, [&] { return editor_.beginAgain(); });
   points_to_commit_ = 0;
 }
 
@@ -99,7 +93,7 @@ void ScanAdditions::copy(const rdf::ReadTransaction& other, bool is_lender) {
 }
 
 rdf::WriteTransaction& ScanAdditions::transaction() {
-  begin();
+  if (!transaction_) transaction_.emplace(editor_.begin());
   has_other_changes_ = true;
   return *transaction_;
 }
@@ -108,11 +102,11 @@ void ScanAdditions::drop() {
   transaction_.reset();
   if (editor_.params().dry_run) return;
   try {
-    rdf::WriteTransaction transaction = editor_.begin();
+    rdf::WriteTransaction transaction = editor_.beginAgain();
     if (!hasEarlyCommit(transaction)) return;
     eraseEarlyCommit(transaction);
     transaction.commit();
-  } catch (const Error& error) {
+  } catch (const std::exception& error) {  // the first one is what the caller throws
     editor_.sink().note(std::string("what the batch has written stays in the file until the next change: ") +
                         error.what());
   }

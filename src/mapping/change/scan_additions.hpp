@@ -29,7 +29,6 @@ class ScanAdditions {
   void drop();
 
  private:
-  void begin();
   /// Whether only scans are added, and many.
   bool mayCommitEarly() const;
   void commitMany();

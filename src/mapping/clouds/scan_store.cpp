@@ -16,8 +16,6 @@ namespace cluxel::mapping {
 
 namespace {
 
-constexpr std::string_view kTilesKey = "tiles";
-
 using Json = nlohmann::json;
 
 std::vector<double> numbersOf(const Eigen::Isometry3d& pose) {
@@ -197,7 +195,7 @@ void PointChanges::note(const perception::ScanSegment& segment) {
 
 TileSet storedTiles(const rdf::ReadTransaction& transaction) {
   TileSet tiles;
-  const auto bytes = transaction.block(tables::kMeta, kTilesKey);
+  const auto bytes = transaction.block(tables::kMeta, tables::kTilesKey);
   for (std::size_t at = 0; bytes && at + 8 <= bytes->size(); at += 8)
     tiles.insert(tables::tileOfKey(bytes->substr(at, 8)));
   return tiles;
@@ -206,7 +204,7 @@ TileSet storedTiles(const rdf::ReadTransaction& transaction) {
 void storeTiles(rdf::WriteTransaction& transaction, const TileSet& tiles) {
   std::string bytes;
   for (const perception::TileKey& tile : tiles) bytes += tables::keyOf(tile);
-  transaction.putBlock(tables::kMeta, kTilesKey, bytes);
+  transaction.putBlock(tables::kMeta, tables::kTilesKey, bytes);
 }
 
 PreparedScan prepareScan(const scan::Scan& scan) {
