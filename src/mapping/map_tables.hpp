@@ -19,7 +19,7 @@ inline constexpr std::string_view kTilesKey = "tiles";          ///< in kMeta: t
 inline constexpr std::string_view kTexts = "texts";             ///< "ontology/0" ...: the inputs' texts
 inline constexpr std::string_view kScans = "scans";             ///< scan id → description
 inline constexpr std::string_view kScanPoints = "scan_points";  ///< scan id → points in the sensor frame
-/// The same, of scans whose points were committed before them.
+/// As kScans, of scans whose points were committed before them.
 inline constexpr std::string_view kScansToCome = "scans_to_come";
 inline constexpr std::string_view kPoints = "stage_points";  ///< tile → output of each stage
 inline constexpr std::string_view kCluxels = "stage_cluxels";

@@ -141,7 +141,11 @@ class StreetChanges {
       if (!there_.contains(scan) && below(6) != 0) fresh[scan] = static_cast<int>(below(2));
     ChangeParams params{.threads = 1 + static_cast<unsigned>(below(2)), .whole_cluxels = 50U << below(5)};
     params.stage_points = below(2) == 0 ? 1 : 30'000;
+    const std::filesystem::path copy = folder_.path() / "copy.clx";
+    std::filesystem::copy_file(map(), copy, std::filesystem::copy_options::overwrite_existing);
     const ChangeReport report = extendMap(map(), scans_.at(fresh, folder_.path()), params, silence());
+    const ChangeReport at_once = extendMap(copy, scans_.at(fresh, folder_.path()), {.max_window_share = 2}, silence());
+    EXPECT_EQ(countsOf(report.objects), countsOf(at_once.objects)) << "the report follows the strips";
     if (report.local_commits == 1 && report.tiles_decided > report.tiles) ++computed_;  // beside strips twice
     there_.merge(fresh);
     return "grow in bands of " + std::to_string(params.stage_points) + " points";
@@ -270,6 +274,10 @@ class StreetChanges {
             {},
             {},
             regionAnchor(reader.clouds(), {at - up, at + right, at + up, at - right})};
+  }
+  static std::map<std::string, std::size_t> countsOf(const ObjectChanges& changes) {
+    return {{"unchanged", changes.unchanged},    {"added", changes.added.size()}, {"gone", changes.gone.size()},
+            {"changed", changes.changed.size()}, {"split", changes.split.size()}, {"joined", changes.joined.size()}};
   }
   void note(const ChangeReport& report) {
     const bool is_in_strips = report.local_commits == 0 && report.tiles_decided > report.tiles;  // beside strips twice

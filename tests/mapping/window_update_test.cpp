@@ -82,7 +82,11 @@ TEST(WindowUpdate, DecidesAllInStripsAsABuildDoes) {
 
 TEST(WindowUpdate, GrowsInBandsAndStripsAsABuildDoes) {
   checkSequences(
-      140, 6, [](StreetChanges& changes, unsigned i) { return i % 3 == 2 ? changes.stateSomething() : changes.grow(); },
+      140, 6,
+      [](StreetChanges& changes, unsigned i) {
+        if (i % 2 == 0) return changes.grow();
+        return i % 4 == 1 ? changes.stateSomething() : changes.step();
+      },
       How::Growing);
 }
 

@@ -3,12 +3,15 @@
 // are read by nobody.
 #include "mapping/build/early_commit.hpp"
 
+#include <algorithm>
+#include <chrono>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "mapping/clouds/scan_store.hpp"
 #include "mapping/map_tables.hpp"
+#include "rdf/file/map_replacement.hpp"
 
 namespace cluxel::mapping {
 
@@ -47,7 +50,10 @@ class OtherOutputs {
   }
 
   void putBack() {
-    for (const Output& output : outputs_) put(output.table, output.key, output.now);
+    for (Output& output : outputs_) {
+      put(output.table, output.key, output.now);
+      output = {};
+    }
   }
 
  private:
@@ -81,6 +87,19 @@ class OtherOutputs {
   std::vector<Output> outputs_;
 };
 
+/// Another program may write first, as between two commands.
+rdf::WriteTransaction begunSoon(const BeginBatch& begin) {
+  constexpr auto kPatience = std::chrono::minutes(10);
+  const auto deadline = std::chrono::steady_clock::now() + kPatience;
+  while (true) {
+    try {
+      return begin();
+    } catch (const rdf::MapBusy&) {
+      if (std::chrono::steady_clock::now() >= deadline) throw;
+    }
+  }
+}
+
 }  // namespace
 
 void commitPoints(std::span<const scan::ScanId> scans, rdf::WriteTransaction& transaction, const BeginBatch& begin) {
@@ -88,12 +107,16 @@ void commitPoints(std::span<const scan::ScanId> scans, rdf::WriteTransaction& tr
   for (const scan::ScanId& scan : scans) keys.push_back(tables::keyOf(scan));
   moveBlocks(transaction, tables::kScans, tables::kScansToCome, keys);
   transaction.commit();
-  transaction = begin();
+  transaction = begunSoon(begin);
   moveBlocks(transaction, tables::kScansToCome, tables::kScans, keys);
 }
 
 void commitOutputs(std::span<const scan::ScanId> scans, const TileSet& changed, rdf::WriteTransaction& transaction,
                    const BeginBatch& begin) {
+  const TileSet before = storedTiles(transaction.before());
+  const auto known = static_cast<std::size_t>(
+      std::count_if(changed.begin(), changed.end(), [&](const TileKey& tile) { return before.contains(tile); }));
+  if (2 * known > changed.size()) return;  // more would be put back than committed
   OtherOutputs others(transaction, changed);
   commitPoints(scans, transaction, begin);
   others.putBack();

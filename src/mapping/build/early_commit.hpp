@@ -20,6 +20,7 @@ using BeginBatch = std::function<rdf::WriteTransaction()>;
 void commitPoints(std::span<const scan::ScanId> scans, rdf::WriteTransaction& transaction, const BeginBatch& begin);
 
 /// The same after the stages: commits their outputs of `changed` tiles, too, as far as the map did not have the tiles.
+/// Does nothing where the map had most of them.
 void commitOutputs(std::span<const scan::ScanId> scans, const perception::TileSet& changed,
                    rdf::WriteTransaction& transaction, const BeginBatch& begin);
 

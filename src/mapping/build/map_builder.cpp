@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Adds scans to a map file in batches; each batch is one transaction from points to facts.
+// Adds scans to a map file in batches; each becomes part of the map in one transaction, from points to facts.
 #include "mapping/build/map_builder.hpp"
 #include "mapping/build/batch_size.hpp"
 
@@ -75,7 +75,12 @@ class MapBuild {
     goOn();
     for (std::size_t next = 0; next < scans_.size();) {
       if (next > 0) work_.reopen(), returnFreeMemory();
-      next = addBatch(next);
+      try {
+        next = addBatch(next);
+      } catch (...) {
+        dropEarlyCommit();
+        throw;
+      }
     }
     for (const std::string& note : reading_notes_.totals()) sink_.note(note);
     return report_;
@@ -89,6 +94,18 @@ class MapBuild {
     requireScansOf(work_, scans_, there);
     sink_.note("goes on with " + work_.path().string() + ": " + std::to_string(there.size()) + " of " +
                std::to_string(scans_.size()) + " scans are there");
+  }
+
+  /// Of a batch that failed; what cannot be erased now is erased by the next build.
+  void dropEarlyCommit() {
+    try {
+      rdf::WriteTransaction transaction = work_.environment().write();
+      if (!hasEarlyCommit(transaction)) return;
+      eraseEarlyCommit(transaction);
+      transaction.commit();
+    } catch (const std::exception& error) {  // the first one is what the caller throws
+      sink_.note(std::string("what the batch has written stays in the file until the build goes on: ") + error.what());
+    }
   }
 
   /// Detects another writer between two commits, in case it did not use the lock.

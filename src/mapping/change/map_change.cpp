@@ -69,7 +69,7 @@ void noteDone(const MapEditor& editor, std::size_t scans, const std::string& don
 ChangeReport addBy(MapEditor& editor, const scan::ScanSet& scans) {
   ProgressSink& sink = editor.sink();
   requireFrame(editor.inputs().inputs, scans);
-  ScanAdditions additions(editor, "extend");
+  ScanAdditions additions(editor, "extend", kBatchPoints);
   scan::ReadingNotes notes(scans.remedies());
   try {
     for (std::size_t i = 0; i < scans.size(); ++i) {

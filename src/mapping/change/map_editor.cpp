@@ -239,6 +239,7 @@ void MapEditor::commit(rdf::WriteTransaction& transaction, const std::string& op
   const double started_s = secondsNow();
   StageClock clock(sink_);
   SemanticUpdate layers = decide(transaction, std::move(changes), scans, clock);
+  has_decided_ = true;
   const bool is_large = layers.tiles_decided > kLargeCommit;
   if (stages_) stages_->dropIfMany();
   returnFreeMemory();
@@ -256,6 +257,7 @@ void MapEditor::commit(rdf::WriteTransaction& transaction, const std::string& op
   note(std::move(layers));
   if (params_.dry_run) return;
   transaction.commit();
+  has_decided_ = false;
   reopens_ = is_large;
   try {
     report_.free_space = rdf::freeSpaceOf(environment_->read());

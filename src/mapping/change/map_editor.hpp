@@ -114,7 +114,11 @@ class MapEditor {
   void noteStatements() const;
   /// Opens the file again. Throws Error (StoreUnavailable) when another has taken its name.
   void reopen();
-  UpdateParams layerParams() const { return {params_.threads, params_.max_window_share, params_.whole_cluxels}; }
+  UpdateParams layerParams() const {
+    UpdateParams params{params_.threads, params_.max_window_share, params_.whole_cluxels};
+    params.is_first_of_commit = !has_decided_;
+    return params;
+  }
 
   std::filesystem::path file_;
   std::optional<BuildLock> lock_;
@@ -134,8 +138,9 @@ class MapEditor {
   TileSet touched_, changed_;    ///< in all commits
   ObjectDifference difference_;  ///< from before the first commit on
   bool has_begun_ = false;
-  bool reopens_ = false;  ///< the file is to be opened again
-  ino_t inode_ = 0;       ///< of the file that is open
+  bool has_decided_ = false;  ///< since the last commit: a dry run does so several times
+  bool reopens_ = false;      ///< the file is to be opened again
+  ino_t inode_ = 0;           ///< of the file that is open
   ChangeReport report_;
 };
 

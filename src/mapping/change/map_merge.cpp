@@ -215,7 +215,7 @@ class Merge {
       throw Error(ErrorKind::StoreUnavailable,
                   maps_[base_].file.string() + ": another program has changed it meanwhile; run the command again");
     editor.setInputs(parseInputs(inputsOfResult()));
-    ScanAdditions additions(editor, "merge");
+    ScanAdditions additions(editor, "merge", kStagePoints);
     editor.nameAtEnd();
     for (std::size_t i = 0; i < maps_.size(); ++i) {
       if (i == base_) continue;

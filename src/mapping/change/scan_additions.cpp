@@ -28,9 +28,7 @@ void ScanAdditions::add(const scan::Scan& scan, std::size_t scans_left) {
   changes_.add(std::move(segments), editor_.params().stage_points);
   points_to_commit_ += added_.back().point_count;
   commitMany();
-  if (!editor_.params().dry_run &&
-      isFull(points_, added_.size(), scans_left, editor_.params().batch_points.value_or(kBatchPoints)))
-    finish();
+  if (!editor_.params().dry_run && isFull(points_, added_.size(), scans_left, batch_points_)) finish();
 }
 
 bool ScanAdditions::mayCommitEarly() const {
@@ -88,8 +86,7 @@ void ScanAdditions::copy(const rdf::ReadTransaction& other, bool is_lender) {
   std::set_intersection(own.begin(), own.end(), tiles.begin(), tiles.end(),
                         std::inserter(changes.anew, changes.anew.end()));
   editor_.update(*transaction_, std::move(changes), editor_.sink());
-  if (is_lender || (!editor_.params().dry_run && points_ >= editor_.params().batch_points.value_or(kStagePoints)))
-    finish();
+  if (is_lender || (!editor_.params().dry_run && points_ >= batch_points_)) finish();
 }
 
 rdf::WriteTransaction& ScanAdditions::transaction() {

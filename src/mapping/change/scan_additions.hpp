@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Adds scans to an opened map in batches; each batch is one commit.
+// Adds scans to an opened map in batches; each becomes part of the map in one commit.
 #pragma once
 
 #include <optional>
@@ -12,8 +12,11 @@ namespace cluxel::mapping {
 
 class ScanAdditions {
  public:
-  /// `operation` names the change in the history.
-  ScanAdditions(MapEditor& editor, std::string operation) : editor_(editor), operation_(std::move(operation)) {}
+  /// `operation` names the change in the history. A batch has `batch_points`, unless the editor is given a number.
+  ScanAdditions(MapEditor& editor, std::string operation, std::uint64_t batch_points)
+      : editor_(editor),
+        operation_(std::move(operation)),
+        batch_points_(editor.params().batch_points.value_or(batch_points)) {}
 
   /// Stores a scan, and commits when the batch is full and more than a small rest of scans follows. A dry run has one
   /// batch, which stays in its transaction.
@@ -39,6 +42,7 @@ class ScanAdditions {
 
   MapEditor& editor_;
   std::string operation_;
+  std::uint64_t batch_points_;
   std::optional<rdf::WriteTransaction> transaction_;  ///< of the open batch
   PointChanges changes_;
   std::vector<Cloud> added_;

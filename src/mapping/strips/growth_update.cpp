@@ -4,6 +4,7 @@
 #include "mapping/strips/growth_update.hpp"
 
 #include <algorithm>
+#include <map>
 #include <tuple>
 #include <utility>
 
@@ -36,10 +37,8 @@ class GrowthUpdate {
     params_.max_window_share = 2;  // a window never gives way to the whole map
     for (const auto& [tile, summary] : changes.former_summaries)
       if (!summary && all_.contains(tile)) new_.insert(tile);
-    for (const TileKey& tile : changes.tiles)
-      (all_.contains(tile) && !new_.contains(tile) ? other_ : gone_).insert(tile);
-    gone_ = without(std::move(gone_), new_);
-    if (!new_.empty()) cluxels_ = cluxelsIn(new_) + cluxelsIn(other_);
+    other_ = without(TileSet(changes.tiles), new_);
+    cluxels_ = cluxelsIn(new_) + cluxelsIn(other_);
     strip_.told_clouds = former.clouds;
     strip_.keeps_lists = params_.lists_objects;
   }
@@ -94,11 +93,10 @@ class GrowthUpdate {
     OutputChanges changes;
     for (const TileKey& tile : tiles) noteChange(tile, new_.contains(tile) || hidden_.contains(tile), changes);
     for (const TileKey& tile : without(TileSet(hidden), hidden_)) noteHidden(tile, changes);
-    if (settled_.empty())
-      for (const TileKey& tile : gone_) noteChange(tile, false, changes);
     strip_.anew = perception::withRing(perception::unionOf(TileSet(tiles), hidden), strip_.shown);
     changes.tiles.insert(strip_.anew.begin(), strip_.anew.end());
     work_.stages.readAsBefore(&before_, other);
+    strip_.as_before = other;
     const LayerWork work{work_.transaction, work_.parsed, work_.stages, params_, work_.sink, work_.check};
     auto decided = updateAround(work, changes, ChangedInputs::Scans, nullptr, &strip_);
     if (!decided) return std::nullopt;
@@ -154,7 +152,6 @@ class GrowthUpdate {
   TileSet all_;                ///< of the map
   TileSet new_;                ///< that are not shown yet
   TileSet other_;              ///< that were there and have other outputs now: so far they count as they were
-  TileSet gone_;               ///< that were there
   TileSet settled_;            ///< that are shown as they are now
   TileSet hidden_;             ///< of the other ones: those beside settled ones
   std::uint64_t cluxels_ = 0;  ///< of new and other tiles
@@ -163,12 +160,25 @@ class GrowthUpdate {
   ObjectDifference difference_;
 };
 
+/// Whether scans were only added: no tile is gone, and points of tiles as they were are those of scans as they are.
+bool isOnlyAdded(const rdf::ReadTransaction& transaction, const OutputChanges& changes, const SemanticState& former) {
+  const TileSet tiles = storedTiles(transaction);
+  std::map<ContentHash, ContentHash> now;
+  for (const SeenCloud& cloud : seenClouds(storedClouds(transaction))) now.emplace(cloud.id, cloud.content);
+  return std::includes(tiles.begin(), tiles.end(), changes.tiles.begin(), changes.tiles.end()) &&
+         std::all_of(former.clouds.begin(), former.clouds.end(), [&](const SeenCloud& cloud) {
+           const auto same = now.find(cloud.id);
+           return same != now.end() && same->second == cloud.content;
+         });
+}
+
 }  // namespace
 
 std::optional<SemanticUpdate> updateByGrowth(const LayerWork& work, const OutputChanges& changes) {
   if (changes.has_copied_map || !work.params.is_first_of_commit || !canBeInStrips(work)) return std::nullopt;
   const std::optional<SemanticState> former = storedSemanticState(work.transaction);
   if (!former || former->cluxels == 0) return std::nullopt;
+  if (!isOnlyAdded(work.transaction, changes, *former)) return std::nullopt;
   GrowthUpdate growth(work, changes, *former);
   return growth.isLarge() ? growth.run() : std::nullopt;
 }

@@ -6,8 +6,8 @@
 
 namespace cluxel::mapping {
 
-/// Computes all layers and facts. A map that had layers before and is larger than UpdateParams::whole_cluxels is
-/// decided strip by strip, with the same result, when all rules have a reach. Memory: decision 0121.
+/// Computes all layers and facts. A map that is larger than UpdateParams::whole_cluxels is decided strip by strip, with
+/// the same result, when all rules have a reach. Memory: decision 0121.
 SemanticUpdate updateAll(const LayerWork& work, const OutputChanges& changes);
 
 /// Whether the rules allow for strips: all have a reach, and only the ground may be an object of a whole class.

@@ -62,7 +62,7 @@ const perception::SummaryTile* FormerObjects::summaryOf(const perception::TileKe
 
 void FormerObjects::add(const TileLayer& layer, const std::function<bool(const ContentHash&)>& is_wanted) {
   if (const perception::SummaryTile* summary = summaryOf(layer.key))
-    members_.add(layer, *summary, former_.isOther(layer.key), is_wanted);
+    members_.add(layer, *summary, former_.isOther(layer.key) || will_change_(layer.key), is_wanted);
 }
 
 std::vector<ObjectMembers> formerObjects(const rdf::ReadTransaction& transaction, const OutputChanges& changes) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <utility>
 #include <vector>
 
 #include "mapping/build/tile_stages.hpp"
@@ -39,9 +40,11 @@ std::vector<ObjectMembers> storedMembers(const rdf::ReadTransaction& transaction
 /// Collects members from the layers of tiles that are not written yet.
 class FormerObjects {
  public:
-  /// `stages` holds the summaries of the tiles that did not change.
-  FormerObjects(const rdf::ReadTransaction& transaction, const TileStages& stages, FormerSummaries& former)
-      : stages_(stages), former_(former), members_(transaction) {}
+  /// `stages` holds the summaries of the tiles that did not change. `will_change`: tiles of which the seeds may be
+  /// others later in the same change.
+  FormerObjects(const rdf::ReadTransaction& transaction, const TileStages& stages, FormerSummaries& former,
+                std::function<bool(const perception::TileKey&)> will_change)
+      : stages_(stages), former_(former), will_change_(std::move(will_change)), members_(transaction) {}
 
   /// Adds the members that `layer` holds of the objects for which `is_wanted`.
   void add(const TileLayer& layer, const std::function<bool(const ContentHash&)>& is_wanted);
@@ -54,6 +57,7 @@ class FormerObjects {
 
   const TileStages& stages_;
   FormerSummaries& former_;
+  std::function<bool(const perception::TileKey&)> will_change_;
   MemberLists members_;
 };
 

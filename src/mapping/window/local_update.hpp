@@ -33,6 +33,7 @@ struct MapStrip {
   std::vector<SeenCloud> told_clouds;    ///< as the facts have them
   std::set<ContentHash> wide;            ///< objects of whole classes that the map had
   rules::KnownSplits* splits = nullptr;  ///< may be absent
+  perception::TileSet as_before;         ///< tiles that count as they were; their cluxels may get other seeds
   bool keeps_lists = false;              ///< SemanticUpdate tells the objects that differ
 };
 
