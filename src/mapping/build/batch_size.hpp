@@ -9,7 +9,7 @@
 namespace cluxel::mapping {
 
 /// Points of a batch of scans when nothing else is asked for. With a rest of half as many it takes up to 2 GiB of
-/// memory (generated city, two threads): decision 0126.
+/// memory where places are new (generated city, two threads): decision 0126.
 inline constexpr std::uint64_t kBatchPoints = 70'000'000;
 
 /// Whether a batch, or a part of one, of `scans` scans is to be closed. A full one takes along what is left when that
