@@ -95,6 +95,12 @@ inline std::map<std::string, int> differingTables(const std::filesystem::path& a
   return tables;
 }
 
+/// How many objects a change reports, by kind.
+inline std::map<std::string, std::size_t> countsOf(const ObjectChanges& changes) {
+  return {{"unchanged", changes.unchanged},    {"added", changes.added.size()}, {"gone", changes.gone.size()},
+          {"changed", changes.changed.size()}, {"split", changes.split.size()}, {"joined", changes.joined.size()}};
+}
+
 /// How changes are computed.
 enum class How : std::uint8_t {
   Around,    ///< in a window, however large
@@ -274,10 +280,6 @@ class StreetChanges {
             {},
             {},
             regionAnchor(reader.clouds(), {at - up, at + right, at + up, at - right})};
-  }
-  static std::map<std::string, std::size_t> countsOf(const ObjectChanges& changes) {
-    return {{"unchanged", changes.unchanged},    {"added", changes.added.size()}, {"gone", changes.gone.size()},
-            {"changed", changes.changed.size()}, {"split", changes.split.size()}, {"joined", changes.joined.size()}};
   }
   void note(const ChangeReport& report) {
     const bool is_in_strips = report.local_commits == 0 && report.tiles_decided > report.tiles;  // beside strips twice
