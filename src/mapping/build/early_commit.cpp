@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <exception>
 #include <optional>
 #include <string>
 #include <vector>
@@ -137,6 +138,17 @@ void eraseEarlyCommit(rdf::WriteTransaction& transaction) {
   for (const std::string_view table : tables::kStageTables)
     for (const std::string& key : keysOf(transaction, table))
       if (!tiles.contains(tables::tileOfKey(key))) transaction.eraseBlock(table, key);
+}
+
+void dropEarlyCommit(const BeginBatch& begin, ProgressSink& sink) {
+  try {
+    rdf::WriteTransaction transaction = begin();
+    if (!hasEarlyCommit(transaction)) return;
+    eraseEarlyCommit(transaction);
+    transaction.commit();
+  } catch (const std::exception& error) {
+    sink.note(std::string("what the batch has written stays in the file until the next change: ") + error.what());
+  }
 }
 
 }  // namespace cluxel::mapping

@@ -6,6 +6,7 @@
 #include <functional>
 #include <span>
 
+#include "cluxel/progress.hpp"
 #include "perception/tile.hpp"
 #include "rdf/file/environment.hpp"
 #include "scan/scan.hpp"
@@ -28,5 +29,7 @@ void commitOutputs(std::span<const scan::ScanId> scans, const perception::TileSe
 bool hasEarlyCommit(const rdf::ReadTransaction& transaction);
 /// Erases what early commits of a killed batch have left.
 void eraseEarlyCommit(rdf::WriteTransaction& transaction);
+/// The same after an error, which the caller then throws; notes when it cannot be erased now.
+void dropEarlyCommit(const BeginBatch& begin, ProgressSink& sink);
 
 }  // namespace cluxel::mapping

@@ -78,7 +78,7 @@ class MapBuild {
       try {
         next = addBatch(next);
       } catch (...) {
-        dropEarlyCommit();
+        dropEarlyCommit([&] { return work_.environment().write(); }, sink_);
         throw;
       }
     }
@@ -94,18 +94,6 @@ class MapBuild {
     requireScansOf(work_, scans_, there);
     sink_.note("goes on with " + work_.path().string() + ": " + std::to_string(there.size()) + " of " +
                std::to_string(scans_.size()) + " scans are there");
-  }
-
-  /// Of a batch that failed; what cannot be erased now is erased by the next build.
-  void dropEarlyCommit() {
-    try {
-      rdf::WriteTransaction transaction = work_.environment().write();
-      if (!hasEarlyCommit(transaction)) return;
-      eraseEarlyCommit(transaction);
-      transaction.commit();
-    } catch (const std::exception& error) {  // the first one is what the caller throws
-      sink_.note(std::string("what the batch has written stays in the file until the build goes on: ") + error.what());
-    }
   }
 
   /// Detects another writer between two commits, in case it did not use the lock.

@@ -3,7 +3,6 @@
 #include "mapping/change/scan_additions.hpp"
 
 #include <algorithm>
-#include <exception>
 #include <iterator>
 #include <utility>
 
@@ -97,16 +96,7 @@ rdf::WriteTransaction& ScanAdditions::transaction() {
 
 void ScanAdditions::drop() {
   transaction_.reset();
-  if (editor_.params().dry_run) return;
-  try {
-    rdf::WriteTransaction transaction = editor_.beginAgain();
-    if (!hasEarlyCommit(transaction)) return;
-    eraseEarlyCommit(transaction);
-    transaction.commit();
-  } catch (const std::exception& error) {  // the first one is what the caller throws
-    editor_.sink().note(std::string("what the batch has written stays in the file until the next change: ") +
-                        error.what());
-  }
+  if (!editor_.params().dry_run) dropEarlyCommit([&] { return editor_.beginAgain(); }, editor_.sink());
 }
 
 void ScanAdditions::finish() {
