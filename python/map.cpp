@@ -134,7 +134,7 @@ constexpr const char* kBuildDoc =
     "Builds the map `file` from scan files, folders and manifests, and opens it.\n\n"
     "An unfinished build of the same inputs goes on; a finished map is replaced only with force=True, and stays as it\n"
     "is when the build fails. Cost: some seconds per million points. Memory: 1 GB, and some 10 bytes a point of a "
-    "batch.\n\n"
+    "batch where places are new.\n\n"
     "poses: file of the scans' poses (KITTI 3x4, TUM or 4x4 text); None: beside the scans.\n"
     "model, rules, sparql_rules, ontology: None: the shipped ones. Names may be those of the data folder.\n"
     "home: the data folder; None: CLUXEL_HOME, else that of the installation.\n"

@@ -3,7 +3,6 @@
 // are read by nobody.
 #include "mapping/build/early_commit.hpp"
 
-#include <algorithm>
 #include <chrono>
 #include <exception>
 #include <optional>
@@ -41,12 +40,10 @@ void moveBlocks(rdf::WriteTransaction& transaction, std::string_view from, std::
 /// they are put back.
 class OtherOutputs {
  public:
-  OtherOutputs(rdf::WriteTransaction& transaction, const TileSet& changed) : transaction_(transaction) {
-    const rdf::ReadTransaction before = transaction.before();
-    const TileSet tiles_before = storedTiles(before);
-    for (const TileKey& tile : changed)
-      if (tiles_before.contains(tile))
-        for (const std::string_view table : tables::kStageTables) exchange(before, table, tables::keyOf(tile));
+  OtherOutputs(rdf::WriteTransaction& transaction, const rdf::ReadTransaction& before, const TileSet& tiles)
+      : transaction_(transaction) {
+    for (const TileKey& tile : tiles)
+      for (const std::string_view table : tables::kStageTables) exchange(before, table, tables::keyOf(tile));
     exchange(before, tables::kMeta, std::string(tables::kTilesKey));
   }
 
@@ -114,11 +111,13 @@ void commitPoints(std::span<const scan::ScanId> scans, rdf::WriteTransaction& tr
 
 void commitOutputs(std::span<const scan::ScanId> scans, const TileSet& changed, rdf::WriteTransaction& transaction,
                    const BeginBatch& begin) {
-  const TileSet before = storedTiles(transaction.before());
-  const auto known = static_cast<std::size_t>(
-      std::count_if(changed.begin(), changed.end(), [&](const TileKey& tile) { return before.contains(tile); }));
-  if (2 * known > changed.size()) return;  // more would be put back than committed
-  OtherOutputs others(transaction, changed);
+  std::optional<rdf::ReadTransaction> before = transaction.before();
+  const TileSet tiles_before = storedTiles(*before);
+  TileSet known = changed;
+  std::erase_if(known, [&](const TileKey& tile) { return !tiles_before.contains(tile); });
+  if (2 * known.size() > changed.size()) return;  // more would be put back than committed
+  OtherOutputs others(transaction, *before, known);
+  before.reset();
   commitPoints(scans, transaction, begin);
   others.putBack();
 }

@@ -139,7 +139,7 @@ class MapBuild {
       }
       changes.add(std::move(segments), params_.stage_points);
       changes.is_alone = !has_later_times;
-      if (changes.isLarge() && changes.is_alone && points_to_commit >= params_.stage_points) {
+      if (changes.mayCommitEarly() && points_to_commit >= params_.stage_points) {
         commitPoints(added, transaction, begin);
         points_to_commit = 0;
       }
@@ -158,7 +158,7 @@ class MapBuild {
 
   void commitBatch(const OpenBatch& batch, PointChanges changes, bool is_last, double started_s, StageClock& clock) {
     rdf::WriteTransaction& transaction = batch.transaction;
-    const bool commits_early = changes.isLarge() && changes.is_alone;
+    const bool commits_early = changes.mayCommitEarly();
     stages_.update(transaction, std::move(changes), params_.threads, clock);
     if (commits_early) commitOutputs(batch.scans, stages_.changedTiles(), transaction, batch.begin);
     stages_.dropPoints();

@@ -71,8 +71,8 @@ class TileStages {
   /// The same for these tiles alone; others are given up. Of the tiles next to them the ground is read, too.
   void hold(const rdf::ReadTransaction& transaction, const perception::TileSet& tiles,
             const perception::TileSet& around);
-  /// From now on the outputs of `tiles` are read as `earlier` has them, a commit that must outlive their use; null: no
-  /// tile is.
+  /// From now on the outputs of `tiles` are read from `earlier`, a commit that must outlive these reads. Null: none
+  /// are.
   void readAsBefore(const rdf::ReadTransaction* earlier, perception::TileSet tiles);
   /// Reads the points of all tiles from the scans, and computes from them what is measured of cluxels. Cost: about
   /// 150 ns a point.

@@ -197,7 +197,7 @@ SemanticUpdate MapEditor::decide(rdf::WriteTransaction& transaction, PointChange
     if (std::vector<TileSet> parts = partsOfAll(transaction, changes.tiles()); parts.size() > 1)
       return decideInParts(transaction, std::move(parts), sink);
   }
-  const bool commits_early = changes.isLarge() && changes.is_alone;
+  const bool commits_early = changes.mayCommitEarly();
   update(transaction, std::move(changes), sink);
   if (commits_early) commitOutputs(idsOf(scans), stages_->changedTiles(), transaction, [&] { return beginAgain(); });
   return updateSemanticLayer(transaction, parsed_, *stages_, inputs, layerParams(), sink);

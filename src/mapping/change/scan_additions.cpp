@@ -30,13 +30,14 @@ void ScanAdditions::add(const scan::Scan& scan, std::size_t scans_left) {
   if (!editor_.params().dry_run && isFull(points_, added_.size(), scans_left, batch_points_)) finish();
 }
 
-bool ScanAdditions::mayCommitEarly() const {
-  return changes_.isLarge() && !has_other_changes_ && !editor_.params().dry_run;
+void ScanAdditions::noteAlone() {
+  changes_.is_alone = !has_other_changes_ && !editor_.params().dry_run;
 }
 
 /// Points of many scans are committed early.
 void ScanAdditions::commitMany() {
-  if (!mayCommitEarly() || points_to_commit_ < editor_.params().stage_points) return;
+  noteAlone();
+  if (!changes_.mayCommitEarly() || points_to_commit_ < editor_.params().stage_points) return;
   commitPoints(idsOf(added_), *transaction_, [&] { return editor_.beginAgain(); });
   points_to_commit_ = 0;
 }
@@ -101,7 +102,7 @@ void ScanAdditions::drop() {
 
 void ScanAdditions::finish() {
   noteOtherTimes();
-  changes_.is_alone = mayCommitEarly();
+  noteAlone();
   if (!added_.empty() || has_other_changes_) editor_.commit(*transaction_, operation_, std::move(changes_), added_);
   editor_.result().scans_added += added_.size();
   transaction_.reset();

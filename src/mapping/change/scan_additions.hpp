@@ -32,8 +32,8 @@ class ScanAdditions {
   void drop();
 
  private:
-  /// Whether only scans are added, and many.
-  bool mayCommitEarly() const;
+  /// Notes whether scans are all that changes in the transaction, which is then committed.
+  void noteAlone();
   void commitMany();
   void noteAdded(const Cloud& cloud);
   /// A scan that is there may be given with another time.

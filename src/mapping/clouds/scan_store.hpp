@@ -35,8 +35,8 @@ struct PointChanges {
 
   TileSet tiles() const;
   bool hasAdded() const { return !added.empty() || !stored.empty(); }
-  /// Whether there are so many that none stays in memory.
-  bool isLarge() const { return !stored.empty(); }
+  /// Whether there are so many points that none stays in memory, and nothing else changes.
+  bool mayCommitEarly() const { return is_alone && !stored.empty(); }
   /// Adds what a stored scan has. From one and a half times `part_points` points on, none stay in memory.
   void add(ScanSegments segments, std::uint64_t part_points);
 

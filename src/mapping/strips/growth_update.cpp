@@ -86,9 +86,8 @@ class GrowthUpdate {
   /// is their turn.
   std::optional<SemanticUpdate> decide(const TileSet& tiles) {
     const TileSet other = without(TileSet(other_), tiles), fresh = without(TileSet(new_), tiles);
-    TileSet settled = perception::unionOf(TileSet(settled_), tiles), hidden;
-    for (const TileKey& tile : perception::withRing(settled, other)) hidden.insert(tile);
-    hidden = without(std::move(hidden), settled);
+    TileSet settled = perception::unionOf(TileSet(settled_), tiles);
+    TileSet hidden = perception::withRing(settled, other);
     strip_.shown = without(without(TileSet(all_), fresh), hidden);
     OutputChanges changes;
     for (const TileKey& tile : tiles) noteChange(tile, new_.contains(tile) || hidden_.contains(tile), changes);
