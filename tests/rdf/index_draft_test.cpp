@@ -11,6 +11,7 @@
 
 #include "rdf/file/map_check.hpp"
 #include "rdf/map_file_fixture.hpp"
+#include "rdf/scratch_folder.hpp"
 #include "rdf/store/indexes/index_orders.hpp"
 #include "rdf/store/quad_journal.hpp"
 #include "rdf/store/quad_reader_impl.hpp"
@@ -38,9 +39,26 @@ void expectSame(const IndexDraft& draft, const std::set<Key128>& keys) {
   }
 }
 
+/// Changes a draft and a set, and compares what the draft tells with what the set did.
+void change(IndexDraft& draft, std::set<Key128>& keys, const std::set<Key128>& added, const std::set<Key128>& removed) {
+  const std::vector<Key128> to_add(added.begin(), added.end()), to_remove(removed.begin(), removed.end());
+  std::vector<Key128> has_added, has_removed, new_keys, old_keys;
+  draft.change(to_add, to_remove,
+               {[&](Key128 key) { has_added.push_back(key); }, [&](Key128 key) { has_removed.push_back(key); },
+                [](std::size_t) {}});
+  for (const Key128 key : added)
+    if (keys.insert(key).second) new_keys.push_back(key);
+  for (const Key128 key : removed)
+    if (keys.erase(key) == 1) old_keys.push_back(key);
+  EXPECT_TRUE(has_added == new_keys);
+  EXPECT_TRUE(has_removed == old_keys);
+  expectSame(draft, keys);
+}
+
 TEST(IndexDraft, HoldsWhatASetHolds) {
+  const ScratchFolder folder;
   std::mt19937 random(5);
-  IndexDraft draft;
+  IndexDraft draft(folder.path());
   std::set<Key128> keys;
   for (Key128 key = 0; key < 3000; key += 2) {  // full pages
     draft.append(key << 70U);
@@ -48,18 +66,37 @@ TEST(IndexDraft, HoldsWhatASetHolds) {
   }
   expectSame(draft, keys);
   for (const unsigned one_in : {5U, 2U, 1000U})  // it grows, stays, and is emptied
-    for (int i = 0; i < 20'000; ++i) {
-      const Key128 key = Key128{random() % 4000} << 70U;
-      const bool is_added = random() % one_in == 0;
-      const bool has_changed = is_added ? draft.insert(key) : draft.remove(key);
-      ASSERT_EQ(has_changed, is_added ? keys.insert(key).second : keys.erase(key) == 1);
-      if (i % 4000 == 0) expectSame(draft, keys);
+    for (const int count : {1, 3, 700, 10, 2500, 2, 9000}) {
+      std::set<Key128> added, removed;
+      for (int i = 0; i < count; ++i) (random() % one_in == 0 ? added : removed).insert(Key128{random() % 4000} << 70U);
+      for (const Key128 key : added) removed.erase(key);
+      change(draft, keys, added, removed);
     }
-  expectSame(draft, keys);
-  for (Key128 key = 0; key < 4000; ++key) draft.remove(key << 70U);
-  expectSame(draft, {});
-  EXPECT_TRUE(draft.insert(Key128{7} << 70U));
-  expectSame(draft, {Key128{7} << 70U});
+  change(draft, keys, {}, std::set<Key128>(keys));
+  EXPECT_EQ(draft.pageCount(), 0U);
+  change(draft, keys, {Key128{7} << 70U}, {Key128{8} << 70U});
+}
+
+/// Pages beyond the memory of a draft lie in a file, and are taken again when they are empty.
+TEST(IndexDraft, IsLargerThanItsMemory) {
+  constexpr std::uint64_t kKeys = 5'000'000;  // 76 MiB
+  const ScratchFolder folder;
+  IndexDraft draft(folder.path());
+  for (std::uint64_t key = 0; key < kKeys; ++key) draft.append(Key128{2 * key});
+  std::vector<Key128> some;
+  for (std::uint64_t key = 0; key < kKeys; key += 100) some.push_back(Key128{2 * key + 1});
+  std::uint64_t added = 0, removed = 0;
+  const IndexDraft::Listener listener{[&](Key128) { ++added; }, [&](Key128) { ++removed; }, [](std::size_t) {}};
+  draft.change(some, {}, listener);
+  draft.change({}, some, listener);
+  EXPECT_EQ(added, some.size());
+  EXPECT_EQ(removed, some.size());
+  ASSERT_EQ(draft.size(), kKeys);
+  std::uint64_t next = 0;
+  for (std::size_t i = 0; i < draft.pageCount(); ++i)
+    for (const QuadKey& key : draft.page(i)) ASSERT_TRUE(toNumber(key) == Key128{2 * next++});
+  EXPECT_EQ(next, kKeys);
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));  // the file has no name
 }
 
 TEST(IndexOrders, AreThoseOfASort) {

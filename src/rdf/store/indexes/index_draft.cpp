@@ -1,99 +1,127 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pages split in the middle when a key does not fit; appended ones are full.
+// Pages on which changes fall are written anew, each with as many keys as the others in its place; appended ones are
+// full.
 #include "rdf/store/indexes/index_draft.hpp"
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 namespace cluxel::rdf {
 
-void IndexDraft::Page::setSize(std::size_t count) {
-  const auto lower = static_cast<std::uint16_t>(lmdb_page::kHeaderSize + 2 * count);
-  std::memcpy(bytes.data() + offsetof(lmdb_page::Header, lower), &lower, sizeof lower);
+namespace {
+
+QuadKey* keysOf(std::uint8_t* page) {
+  return reinterpret_cast<QuadKey*>(page + lmdb_page::kHeaderSize);
 }
 
-void IndexDraft::addPage(std::size_t before) {
-  auto page = std::make_unique_for_overwrite<Page>();
-  page->setSize(0);
-  pages_.insert(pages_.begin() + static_cast<std::ptrdiff_t>(before), std::move(page));
-  first_.insert(first_.begin() + static_cast<std::ptrdiff_t>(before), Key128{0});
+void setCount(std::uint8_t* page, std::size_t count) {
+  const auto lower = static_cast<std::uint16_t>(lmdb_page::kHeaderSize + 2 * count);
+  std::memcpy(page + offsetof(lmdb_page::Header, lower), &lower, sizeof lower);
+}
+
+/// Changes in order, of which those of one page are merged with its keys.
+class PageMerge {
+ public:
+  PageMerge(std::span<const Key128> added, std::span<const Key128> removed, const IndexDraft::Listener& listener)
+      : added_(added), removed_(removed), listener_(listener) {}
+
+  bool isAtEnd() const { return added_.empty() && removed_.empty(); }
+  bool hasBefore(Key128 key) const {
+    return (!added_.empty() && added_.front() < key) || (!removed_.empty() && removed_.front() < key);
+  }
+
+  /// The keys of a page after the changes before `beyond`, or after all that are left where there is none.
+  std::span<const Key128> merge(std::span<const QuadKey> page, const Key128* beyond) {
+    merged_.clear();
+    for (const QuadKey& entry : page) {
+      const Key128 key = toNumber(entry);
+      while (!added_.empty() && added_.front() < key) add();
+      if (!added_.empty() && added_.front() == key) added_ = added_.subspan(1);
+      if (isRemoved(key))
+        listener_.removed(key);
+      else
+        merged_.push_back(key);
+    }
+    while (!added_.empty() && (beyond == nullptr || added_.front() < *beyond)) add();
+    while (!removed_.empty() && (beyond == nullptr || removed_.front() < *beyond)) removed_ = removed_.subspan(1);
+    listener_.has_written(page.size() + merged_.size());
+    return merged_;
+  }
+
+ private:
+  void add() {
+    merged_.push_back(added_.front());
+    listener_.added(added_.front());
+    added_ = added_.subspan(1);
+  }
+  bool isRemoved(Key128 key) {
+    while (!removed_.empty() && removed_.front() < key) removed_ = removed_.subspan(1);
+    return !removed_.empty() && removed_.front() == key;
+  }
+
+  std::span<const Key128> added_, removed_;  ///< those that are left
+  const IndexDraft::Listener& listener_;
+  std::vector<Key128> merged_;
+};
+
+}  // namespace
+
+std::span<const QuadKey> IndexDraft::page(std::size_t number) const {
+  return {keysOf(pages_[number]), lmdb_page::entryCount(pages_[number])};
+}
+
+/// Beyond the last page.
+void IndexDraft::addPage(std::span<const Key128> keys) {
+  pages_.reserve(pages_.size() + 1);
+  std::uint8_t* const page = memory_.take();
+  std::transform(keys.begin(), keys.end(), keysOf(page), toKey);
+  setCount(page, keys.size());
+  pages_.push_back(page);
+  first_.push_back(keys.front());
+  size_ += keys.size();
 }
 
 void IndexDraft::append(Key128 key) {
-  if (pages_.empty() || pages_.back()->size() == Page::kMaxKeys) {
-    addPage(pages_.size());
-    first_.back() = key;
-  }
-  Page& page = *pages_.back();
-  const std::size_t count = page.size();
-  page.first()[count] = toKey(key);
-  page.setSize(count + 1);
+  const std::size_t count = pages_.empty() ? kMaxKeys : page(pages_.size() - 1).size();
+  if (count == kMaxKeys) return addPage(std::span(&key, 1));
+  keysOf(pages_.back())[count] = toKey(key);
+  setCount(pages_.back(), count + 1);
   ++size_;
 }
 
-/// Where the key is, or where it would be inserted. Expects a page.
-IndexDraft::Place IndexDraft::placeOf(Key128 key) const {
-  const auto beyond = std::upper_bound(first_.begin(), first_.end(), key);
-  const auto page = static_cast<std::size_t>(beyond - first_.begin()) - (beyond == first_.begin() ? 0 : 1);
-  const std::span<const QuadKey> keys = pages_[page]->keys();
-  const auto found =
-      std::partition_point(keys.begin(), keys.end(), [key](const QuadKey& entry) { return toNumber(entry) < key; });
-  return {page, static_cast<std::size_t>(found - keys.begin()), found != keys.end() && toNumber(*found) == key};
-}
-
-void IndexDraft::split(std::size_t number) {
-  addPage(number + 1);
-  Page &left = *pages_[number], &right = *pages_[number + 1];
-  const std::size_t kept = left.size() / 2, moved = left.size() - kept;
-  std::copy_n(left.first() + kept, moved, right.first());
-  left.setSize(kept);
-  right.setSize(moved);
-  first_[number + 1] = toNumber(*right.first());
-}
-
-bool IndexDraft::insert(Key128 key) {
-  if (pages_.empty()) {
-    append(key);
-    return true;
+void IndexDraft::change(std::span<const Key128> added, std::span<const Key128> removed, const Listener& listener) {
+  const std::vector<std::uint8_t*> before = std::exchange(pages_, {});
+  const std::vector<Key128> first = std::exchange(first_, {});
+  pages_.reserve(before.size()), first_.reserve(before.size());
+  PageMerge changes(added, removed, listener);
+  const auto add = [&](std::span<const Key128> keys) {
+    const std::size_t pages = (keys.size() + kMaxKeys - 1) / kMaxKeys;
+    for (std::size_t i = 0; i < pages; ++i) {
+      const std::size_t from = keys.size() * i / pages, to = keys.size() * (i + 1) / pages;
+      addPage(keys.subspan(from, to - from));
+    }
+  };
+  if (before.empty()) add(changes.merge({}, nullptr));
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    const Key128* beyond = i + 1 < before.size() ? &first[i + 1] : nullptr;
+    const std::size_t count = lmdb_page::entryCount(before[i]);
+    if (beyond != nullptr ? !changes.hasBefore(*beyond) : changes.isAtEnd()) {
+      pages_.push_back(before[i]);
+      first_.push_back(first[i]);
+      continue;
+    }
+    const std::span<const Key128> merged = changes.merge({keysOf(before[i]), count}, beyond);
+    size_ -= count;
+    memory_.giveBack(before[i]);
+    add(merged);
   }
-  Place place = placeOf(key);
-  if (place.is_there) return false;
-  if (pages_[place.page]->size() == Page::kMaxKeys) {
-    split(place.page);
-    place = placeOf(key);
-  }
-  Page& page = *pages_[place.page];
-  const std::size_t count = page.size();
-  std::copy_backward(page.first() + place.index, page.first() + count, page.first() + count + 1);
-  page.first()[place.index] = toKey(key);
-  page.setSize(count + 1);
-  first_[place.page] = toNumber(*page.first());
-  ++size_;
-  return true;
-}
-
-bool IndexDraft::remove(Key128 key) {
-  if (pages_.empty()) return false;
-  const Place place = placeOf(key);
-  if (!place.is_there) return false;
-  Page& page = *pages_[place.page];
-  const std::size_t count = page.size();
-  std::copy(page.first() + place.index + 1, page.first() + count, page.first() + place.index);
-  page.setSize(count - 1);
-  --size_;
-  if (count > 1) {
-    first_[place.page] = toNumber(*page.first());
-    return true;
-  }
-  pages_.erase(pages_.begin() + static_cast<std::ptrdiff_t>(place.page));
-  first_.erase(first_.begin() + static_cast<std::ptrdiff_t>(place.page));
-  return true;
 }
 
 PageDirectory IndexDraft::directory() const {
   std::vector<const QuadKey*> pages;
   pages.reserve(pages_.size());
-  for (const std::unique_ptr<Page>& page : pages_) pages.push_back(page->first());
+  for (std::uint8_t* const page : pages_) pages.push_back(keysOf(page));
   return PageDirectory(std::move(pages), first_);
 }
 

@@ -1,58 +1,54 @@
 // SPDX-License-Identifier: Apache-2.0
-// An index in memory: what a transaction that changes most of an index reads and changes until it commits.
+// An index beside its table: what a transaction that changes most of an index reads and changes until it commits.
 #pragma once
 
-#include <array>
+#include <cstddef>
 #include <cstdint>
-#include <memory>
+#include <filesystem>
+#include <functional>
+#include <span>
 #include <vector>
 
 #include "rdf/file/page_directory.hpp"
+#include "rdf/store/indexes/draft_pages.hpp"
 
 namespace cluxel::rdf {
 
-/// Sorted keys in pages that are laid out as LMDB's, so that page directories read them as they read the file. Single
-/// changes cost the move of half a page.
+/// Sorted keys in pages that are laid out as LMDB's, so that page directories read them as they read the file.
 class IndexDraft {
  public:
-  IndexDraft() = default;
+  /// Where its pages lie, and in which `folder`: see DraftPages.
+  explicit IndexDraft(std::filesystem::path folder) : memory_(std::move(folder)) {}
   IndexDraft(const IndexDraft&) = delete;
   IndexDraft& operator=(const IndexDraft&) = delete;
 
   std::uint64_t size() const { return size_; }
   /// Adds a key beyond the last one.
   void append(Key128 key);
-  bool insert(Key128 key);  ///< false when the key was there
-  bool remove(Key128 key);  ///< false when it was not
+
+  /// What change() tells.
+  struct Listener {
+    std::function<void(Key128)> added, removed;    ///< keys that really are
+    std::function<void(std::size_t)> has_written;  ///< some keys
+  };
+  /// Both lists are ascending, without duplicates, and disjoint. Keys that are there are not added, those that are not
+  /// are not removed. Cost: linear in the changes and the keys of the pages that they fall on; one step for each other
+  /// page.
+  void change(std::span<const Key128> added, std::span<const Key128> removed, const Listener& listener);
 
   /// Valid until the next change.
   PageDirectory directory() const;
   std::size_t pageCount() const { return pages_.size(); }
-  std::span<const QuadKey> page(std::size_t number) const { return pages_[number]->keys(); }
+  std::span<const QuadKey> page(std::size_t number) const;
 
  private:
-  struct Page {
-    static constexpr std::size_t kBytes = 4096, kMaxKeys = (kBytes - lmdb_page::kHeaderSize) / sizeof(QuadKey);
+  static constexpr std::size_t kMaxKeys = (DraftPages::kPageBytes - lmdb_page::kHeaderSize) / sizeof(QuadKey);
 
-    std::size_t size() const { return lmdb_page::entryCount(bytes.data()); }
-    void setSize(std::size_t count);
-    QuadKey* first() { return reinterpret_cast<QuadKey*>(bytes.data() + lmdb_page::kHeaderSize); }
-    std::span<const QuadKey> keys() const {
-      return {reinterpret_cast<const QuadKey*>(bytes.data() + lmdb_page::kHeaderSize), size()};
-    }
-    std::array<std::uint8_t, kBytes> bytes;
-  };
-  struct Place {
-    std::size_t page = 0, index = 0;
-    bool is_there = false;
-  };
+  void addPage(std::span<const Key128> keys);
 
-  void addPage(std::size_t before);
-  Place placeOf(Key128 key) const;
-  void split(std::size_t page);
-
-  std::vector<std::unique_ptr<Page>> pages_;  ///< none is empty
-  std::vector<Key128> first_;                 ///< the first key of each page
+  DraftPages memory_;
+  std::vector<std::uint8_t*> pages_;  ///< none is empty
+  std::vector<Key128> first_;         ///< the first key of each page
   std::uint64_t size_ = 0;
 };
 

@@ -19,9 +19,6 @@ namespace {
 // The cost of a single put, in keys written by appending.
 constexpr std::uint64_t kPutCost = 4;
 
-// Of a draft, 64 MiB; larger indexes are changed in their tables.
-constexpr std::uint64_t kMaxDraftKeys = 4U << 20U;
-
 /// Calls the poll of a FlushPoll once in a while.
 class EntryPoll {
  public:
@@ -122,7 +119,7 @@ std::uint64_t keyCount(const ReadTransaction::Impl& transaction, Table index) {
 
 std::unique_ptr<IndexDraft> draftFrom(ReadTransaction::Impl& transaction, Table index) {
   const PageDirectory directory = transaction.directories->ofTable(index, transaction);
-  auto draft = std::make_unique<IndexDraft>();
+  auto draft = std::make_unique<IndexDraft>(transaction.environment->file().parent_path());
   EntryPoll poll(transaction);
   for (std::size_t i = 0; i < directory.pageCount(); ++i) {
     for (const QuadKey& key : directory.page(i)) draft->append(toNumber(key));
@@ -150,85 +147,19 @@ void writeDraft(ReadTransaction::Impl& transaction, Table index) {
 bool isDrafted(ReadTransaction::Impl& transaction, Table index, std::uint64_t changes) {
   const std::uint64_t entries = keyCount(transaction, index);
   std::unique_ptr<IndexDraft>& draft = transaction.drafts[static_cast<std::size_t>(index)];
-  if (draft) {
-    if (entries + changes > kMaxDraftKeys) writeDraft(transaction, index);
-    return draft != nullptr;
-  }
-  if (changes * kPutCost <= entries + 1000 || entries + changes > kMaxDraftKeys) return false;
+  if (draft) return true;
+  if (changes * kPutCost <= entries + 1000) return false;
   draft = draftFrom(transaction, index);
   transaction.directories->noteDrafted(index);
   return true;
 }
 
-/// One pass over the keys before and the change.
-template <typename Keep>
-void merge(const IndexDraft& before, const IndexChange& change, const ChangeNotes& notes, EntryPoll& poll,
-           const Keep& keep) {
-  auto added = change.added.begin(), removed = change.removed.begin();
-  const auto add = [&] {
-    keep(*added);
-    notes.added(*added++);
-  };
-  for (std::size_t i = 0; i < before.pageCount(); ++i) {
-    poll.count(before.page(i).size());
-    for (const QuadKey& stored : before.page(i)) {
-      const Key128 key = toNumber(stored);
-      while (added != change.added.end() && *added < key) add();
-      if (added != change.added.end() && *added == key) ++added;
-      while (removed != change.removed.end() && *removed < key) ++removed;
-      if (removed != change.removed.end() && *removed == key)
-        notes.removed(key);
-      else
-        keep(key);
-    }
-  }
-  while (added != change.added.end()) {
-    poll.count(1);
-    add();
-  }
-}
-
 void changeDraft(ReadTransaction::Impl& transaction, Table index, const IndexChange& change, const ChangeNotes& notes) {
-  std::unique_ptr<IndexDraft>& draft = transaction.drafts[static_cast<std::size_t>(index)];
   transaction.directories->noteDrafted(index);
   EntryPoll poll(transaction);
-  constexpr std::uint64_t kInsertCost = 32;  // in keys that are merged
-  if ((change.added.size() + change.removed.size()) * kInsertCost > draft->size()) {
-    auto merged = std::make_unique<IndexDraft>();
-    merge(*draft, change, notes, poll, [&](Key128 key) { merged->append(key); });
-    draft = std::move(merged);
-    return;
-  }
-  for (const Key128 key : change.removed) {
-    poll.count(1);
-    if (draft->remove(key)) notes.removed(key);
-  }
-  for (const Key128 key : change.added) {
-    poll.count(1);
-    if (draft->insert(key)) notes.added(key);
-  }
-}
-
-/// As the keys of a large index are too many for a draft.
-void writeAnew(ReadTransaction::Impl& transaction, Table index, const IndexChange& change, const ChangeNotes& notes) {
-  const std::unique_ptr<IndexDraft> before = draftFrom(transaction, index);
-  transaction.check(mdb_drop(transaction.live(), transaction.table(index), 0), "write an index");
-  IndexCursor cursor(transaction, index);
-  EntryPoll poll(transaction), merged(transaction);
-  RangeSummer sums(index);
-  std::vector<Key128> some;
-  const auto append = [&] {
-    cursor.append(some, poll);
-    if (transaction.environment->hasRanges()) sums.add(some);
-    some.clear();
-  };
-  merge(*before, change, notes, merged, [&](Key128 key) {
-    some.push_back(key);
-    if (some.size() == 4096) append();
-  });
-  append();
-  transaction.directories->noteRewritten(index, before->pageCount() + change.added.size());
-  if (transaction.environment->hasRanges()) transaction.ranges->replace(index, sums.take());
+  transaction.draftOf(index)->change(change.added, change.removed,
+                                     {[&](Key128 key) { notes.added(key); }, [&](Key128 key) { notes.removed(key); },
+                                      [&](std::size_t keys) { poll.count(keys); }});
 }
 
 /// Uses mdb_del only: loops of mdb_cursor_del over duplicates corrupt the file in LMDB 0.9.24.
@@ -275,11 +206,7 @@ void appendKeys(const ReadTransaction::Impl& transaction, MDB_cursor* cursor, st
 namespace {
 
 void writeSingly(ReadTransaction::Impl& transaction, const IndexTask& task) {
-  const std::uint64_t changes = task.change.added.size() + task.change.removed.size();
-  const std::uint64_t entries = keyCount(transaction, task.index);
-  if (entries > 0 && changes * kPutCost > entries + 1000)
-    return writeAnew(transaction, task.index, task.change, ChangeNotes(task));
-  if (changes == 0) return;
+  if (task.change.added.empty() && task.change.removed.empty()) return;
   transaction.directories->requireWellFormed(task.index, transaction, task.change.added, task.change.removed);
   const ChangeNotes notes(
       task, transaction.environment->hasRanges() ? &transaction.ranges->of(task.index, transaction) : nullptr);

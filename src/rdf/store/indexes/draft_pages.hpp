@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// Memory for the pages of an index that is being drafted.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include "rdf/file/file_guards.hpp"
+
+namespace cluxel::rdf {
+
+/// Pages of 4 KiB. The first 16 MiB are anonymous memory. The others are a file without a name, which the kernel may
+/// write out when memory is short, and which goes with the process.
+class DraftPages {
+ public:
+  static constexpr std::size_t kPageBytes = 4096;
+
+  /// A file, if one is needed, is made in `folder`.
+  explicit DraftPages(std::filesystem::path folder) : folder_(std::move(folder)) {}
+  DraftPages(const DraftPages&) = delete;
+  DraftPages& operator=(const DraftPages&) = delete;
+  ~DraftPages();
+
+  /// Its bytes are not set. Throws Error (StoreUnavailable) when the disk is full.
+  std::uint8_t* take();
+  void giveBack(std::uint8_t* page) { free_.push_back(page); }
+
+ private:
+  void addChunk();
+  void* mapOfFile();
+
+  std::filesystem::path folder_;
+  Descriptor file_;
+  std::vector<void*> chunks_;
+  std::vector<std::uint8_t*> free_;  ///< the last one is taken next
+};
+
+}  // namespace cluxel::rdf
