@@ -153,9 +153,10 @@ TEST_F(MapChange, PresenceIsComputedOnlyWhereRaysOrObjectsDiffer) {
   const auto environment = Environment::open(this->map(), OpenMode::ReadWrite);
   WriteTransaction transaction = environment->write();
   std::vector<Cloud> clouds = map.clouds();
+  const std::vector<RayTarget> targets = rayTargets(map.scene(), map.objects(), parseInputs(*inputs).rules);
   using Times = std::vector<std::array<std::optional<double>, 4>>;
   const auto update = [&](unsigned threads) {
-    PresenceUpdate presence_update(transaction, map.scene(), map.objects(), clouds, threads);
+    PresenceUpdate presence_update(transaction, targets, clouds, threads);
     std::vector<RayObserver*> observers;
     if (presence_update.observer() != nullptr) observers.push_back(presence_update.observer());
     passRays(clouds, observers, [&](const Cloud& cloud) { return map.scanOf(cloud.id); });

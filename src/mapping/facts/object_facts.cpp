@@ -4,10 +4,12 @@
 #include "mapping/facts/object_facts.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <optional>
 #include <span>
+#include <string_view>
 
 #include "base/parallel.hpp"
 #include "base/utc_time.hpp"
@@ -17,6 +19,10 @@
 namespace cluxel::mapping {
 
 namespace {
+
+/// The properties of an object that follow from rays.
+constexpr std::array<std::string_view, 6> kRayProperties{"firstSeen",   "lastSeen", "seenEmpty",
+                                                         "seenThrough", "porosity", "rayCount"};
 
 std::string pointText(const Eigen::Vector2d& p) {
   return decimalText(p.x(), 3) + " " + decimalText(p.y(), 3);
@@ -245,6 +251,12 @@ void addRayFacts(rdf::TermId subject, const std::optional<perception::Presence>&
                  const std::optional<perception::RayCounts>& passed_rays, FactSink& facts) {
   if (presence) addPresence(*presence, subject, facts);
   if (passed_rays) addPassedRays(*passed_rays, subject, facts);
+}
+
+void replaceRayFacts(rdf::TermId subject, const std::optional<perception::Presence>& presence,
+                     const std::optional<perception::RayCounts>& passed_rays, FactPatch& patch, FactSink& facts) {
+  for (const std::string_view property : kRayProperties) patch.replace(subject, facts.property(property));
+  addRayFacts(subject, presence, passed_rays, facts);
 }
 
 void addPosition(rdf::TermId subject, const Eigen::Vector3d& p_map, FactSink& facts) {

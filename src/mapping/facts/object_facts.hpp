@@ -3,22 +3,21 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <optional>
-#include <string_view>
 
+#include "mapping/facts/fact_patch.hpp"
 #include "mapping/facts/map_facts.hpp"
 
 namespace cluxel::mapping {
 
 void addObjectFacts(const ObservedMap& map, FactSink& facts);
 
-/// The properties of an object that follow from rays.
-inline constexpr std::array<std::string_view, 6> kRayProperties{"firstSeen",   "lastSeen", "seenEmpty",
-                                                                "seenThrough", "porosity", "rayCount"};
 /// When it was there, and how many rays passed it.
 void addRayFacts(rdf::TermId subject, const std::optional<perception::Presence>& presence,
                  const std::optional<perception::RayCounts>& passed_rays, FactSink& facts);
+/// The same, in place of what the patched graph tells.
+void replaceRayFacts(rdf::TermId subject, const std::optional<perception::Presence>& presence,
+                     const std::optional<perception::RayCounts>& passed_rays, FactPatch& patch, FactSink& facts);
 
 /// x, y, z [m, map].
 void addPosition(rdf::TermId subject, const Eigen::Vector3d& p_map, FactSink& facts);

@@ -17,8 +17,7 @@
 #include "mapping/inference/sparql_rules.hpp"
 #include "mapping/layers/layer_update.hpp"
 #include "mapping/layers/rule_margins.hpp"
-#include "mapping/presence/passed_rays.hpp"
-#include "mapping/presence/stored_presence.hpp"
+#include "mapping/presence/object_presence.hpp"
 #include "mapping/splits_store.hpp"
 #include "mapping/statements/overruled_objects.hpp"
 #include "mapping/statements/statement_facts.hpp"
@@ -143,26 +142,18 @@ SemanticLayer writeSemanticLayer(rdf::WriteTransaction& transaction, const Parse
   const auto policy = threads > 1 ? std::launch::async : std::launch::deferred;
   auto near = std::async(policy, [&] { return nearOf(result.objects, scene.cluxels, object_of); });
   auto wide_tiles = std::async(policy, [&] { return wideTilesOf(scene, stages.summaries(), result.objects); });
-  const auto counts_rays = [&](const rules::SemanticObject& object) {
-    return parsed.rules.catalogue.isA(object.class_iri, rdf::vocabulary::clx("Barrier"));
-  };
-  PresenceUpdate presence_update(transaction, scene, result.objects, clouds, threads);
-  PassedRaysUpdate rays_update(transaction, scene, result.objects, clouds, counts_rays, threads);
-  std::vector<RayObserver*> observers{&rays_update};
-  if (presence_update.observer() != nullptr) observers.push_back(presence_update.observer());
-  passRays(clouds, observers, [&](const Cloud& cloud) { return storedScan(transaction, cloud.id); });
-  const auto presence = presence_update.finish(transaction, Covered::All);
-  const auto passed_rays = rays_update.finish(transaction, Covered::All);
+  const ObjectPresence presence =
+      updatePresence(transaction, rayTargets(scene, result.objects, parsed.rules), Covered::All, clouds, {}, threads);
   const auto sightings = sightingsOf(stages.summaries(), object_of);
   const std::vector<WideTile> wide = wide_tiles.get();
   auto blocks = std::async(policy, [&] {  // nothing below needs them before storeLayers()
     const std::vector<std::uint64_t> hashes = perception::inputHashes(scene, stages.summaries());
     return layerBlocks({.scene = scene, .objects = result.objects, .traces = traces, .inputs = hashes});
   });
-  const std::vector<ToldWay> told_ways = writeObserved(
-      facts,
-      {parsed.inputs, clouds, scene, result, sightings, presence, passed_rays, near.get(), mergedParts(wide), threads},
-      stated.outcomes, ways.get());
+  const std::vector<ToldWay> told_ways = writeObserved(facts,
+                                                       {parsed.inputs, clouds, scene, result, sightings, presence.times,
+                                                        presence.rays, near.get(), mergedParts(wide), threads},
+                                                       stated.outcomes, ways.get());
   storeToldWays(transaction, told_ways);
   storeWideTiles(transaction, wide);
   inferFacts(transaction, parsed.inputs, sink, check);

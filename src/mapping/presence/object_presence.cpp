@@ -6,25 +6,20 @@
 #include "mapping/map_tables.hpp"
 #include "mapping/presence/passed_rays.hpp"
 #include "mapping/presence/stored_presence.hpp"
-#include "rdf/vocabulary.hpp"
 
 namespace cluxel::mapping {
 
-ObjectPresence updatePresence(rdf::WriteTransaction& transaction, const rules::RuleSet& rules,
-                              const perception::Scene& scene, const std::vector<rules::SemanticObject>& objects,
+ObjectPresence updatePresence(rdf::WriteTransaction& transaction, std::span<const RayTarget> targets, Covered covered,
                               const std::vector<Cloud>& clouds, const std::set<ContentHash>& gone, unsigned threads) {
-  const auto counts_rays = [&](const rules::SemanticObject& object) {
-    return rules.catalogue.isA(object.class_iri, rdf::vocabulary::clx("Barrier"));
-  };
-  PresenceUpdate presence(transaction, scene, objects, clouds, threads);
-  PassedRaysUpdate rays(transaction, scene, objects, clouds, counts_rays, threads);
+  PresenceUpdate presence(transaction, targets, clouds, threads);
+  PassedRaysUpdate rays(transaction, targets, clouds, threads);
   std::vector<RayObserver*> observers{&rays};
   if (presence.observer() != nullptr) observers.push_back(presence.observer());
   passRays(clouds, observers, [&](const Cloud& cloud) { return storedScan(transaction, cloud.id); });
   for (const ContentHash& id : gone)
     for (const std::string_view table : {tables::kPresence, tables::kPassedRays})
       transaction.eraseBlock(table, tables::keyOf(id));
-  return {presence.finish(transaction, Covered::Some), rays.finish(transaction, Covered::Some)};
+  return {presence.finish(transaction, covered), rays.finish(transaction, covered)};
 }
 
 }  // namespace cluxel::mapping

@@ -3,12 +3,9 @@
 #include "mapping/presence/presence_votes.hpp"
 
 #include <algorithm>
-#include <array>
 #include <utility>
 
 #include "base/parallel.hpp"
-#include "mapping/facts/object_geometry.hpp"
-#include "rdf/vocabulary.hpp"
 
 namespace cluxel::mapping {
 
@@ -16,7 +13,6 @@ namespace {
 
 using perception::RayVerdict;
 
-constexpr float kClearOfGround_m = 0.3F;
 /// More than the distances at which a ray concerns a place (RayParams).
 constexpr double kAroundRays_m = 1;
 
@@ -28,37 +24,23 @@ Eigen::AlignedBox3d reachedBy(const Cloud& cloud) {
 
 }  // namespace
 
-/// Rays that graze the ground beside a low place end near it: such places are left out where there are others.
-std::vector<Eigen::Vector3d> placesOn(const perception::Scene& scene, const rules::SemanticObject& object) {
-  const perception::SceneCluxels& cluxels = scene.cluxels;
-  if (object.class_iri == rdf::vocabulary::clx("Ground")) return {};
-  std::vector<std::uint32_t> members = cluxelsOf(object);
-  std::vector<std::uint32_t> clear = members;
-  std::erase_if(clear, [&](std::uint32_t c) { return cluxels.height_above_ground[c] < kClearOfGround_m; });
-  if (!clear.empty()) members = std::move(clear);
-  std::vector<Eigen::Vector3d> places;
-  const std::size_t step = (members.size() + perception::kMaxPlaces - 1) / perception::kMaxPlaces;
-  for (std::size_t i = 0; i < members.size(); i += step) places.push_back(cluxels.center[members[i]]);
-  return places;
-}
-
-bool mayPass(const Cloud& cloud, const std::vector<Eigen::Vector3d>& places) {
+bool mayPass(const Cloud& cloud, std::span<const Eigen::Vector3d> places) {
   const Eigen::AlignedBox3d reached = reachedBy(cloud);
   return std::any_of(places.begin(), places.end(),
                      [&](const Eigen::Vector3d& place) { return reached.contains(place); });
 }
 
-bool mayPass(const Cloud& cloud, const std::vector<Eigen::Vector3d>& places, const Eigen::AlignedBox3d& box) {
+bool mayPass(const Cloud& cloud, std::span<const Eigen::Vector3d> places, const Eigen::AlignedBox3d& box) {
   return reachedBy(cloud).intersects(box) && mayPass(cloud, places);
 }
 
-Eigen::AlignedBox3d boxAround(const std::vector<Eigen::Vector3d>& places) {
+Eigen::AlignedBox3d boxAround(std::span<const Eigen::Vector3d> places) {
   Eigen::AlignedBox3d box;
   for (const Eigen::Vector3d& place : places) box.extend(place);
   return box;
 }
 
-PresenceVoting::Sphere PresenceVoting::sphereAround(const std::vector<Eigen::Vector3d>& places) {
+PresenceVoting::Sphere PresenceVoting::sphereAround(std::span<const Eigen::Vector3d> places) {
   Sphere sphere;
   for (const Eigen::Vector3d& place : places) sphere.centre += place / static_cast<double>(places.size());
   for (const Eigen::Vector3d& place : places)
@@ -66,18 +48,18 @@ PresenceVoting::Sphere PresenceVoting::sphereAround(const std::vector<Eigen::Vec
   return sphere;
 }
 
-PresenceVoting::PresenceVoting(const perception::Scene& scene, std::span<const rules::SemanticObject> objects,
-                               const std::vector<Cloud>& clouds, unsigned threads)
+PresenceVoting::PresenceVoting(std::vector<std::span<const Eigen::Vector3d>> places, const std::vector<Cloud>& clouds,
+                               unsigned threads)
     : RayObserver(threads),
       is_told_(timedClouds(clouds).size() >= 2),
-      votes_(objects.size()),
-      spheres_(objects.size()),
-      boxes_(objects.size()) {
-  if (!is_told_) return;
-  for (std::size_t i = 0; i < objects.size(); ++i) {
-    votes_[i].places = placesOn(scene, objects[i]);
-    spheres_[i] = sphereAround(votes_[i].places);
-    boxes_[i] = boxAround(votes_[i].places);
+      places_(std::move(places)),
+      votes_(places_.size()),
+      spheres_(places_.size()),
+      boxes_(places_.size()) {
+  if (!is_told_) places_.assign(places_.size(), {});
+  for (std::size_t i = 0; i < places_.size(); ++i) {
+    spheres_[i] = sphereAround(places_[i]);
+    boxes_[i] = boxAround(places_[i]);
   }
 }
 
@@ -90,7 +72,7 @@ class PresenceVoting::View : public ScanView {
   void look(const perception::RayBundle& bundle, unsigned threads) override {
     constexpr perception::RayParams kParams;
     parallelFor(passed_.size(), threads, [&](std::size_t i) {
-      const std::vector<Eigen::Vector3d>& places = voting_.votes_[passed_[i]].places;
+      const std::span<const Eigen::Vector3d> places = voting_.places_[passed_[i]];
       const Sphere& sphere = voting_.spheres_[passed_[i]];
       const double range_m = bundle.maxRange_m() + sphere.radius_m + kParams.hit_m;
       if ((sphere.centre - bundle.origin()).norm() > range_m) return;
@@ -114,14 +96,14 @@ class PresenceVoting::View : public ScanView {
 bool PresenceVoting::wants(const Cloud& cloud) const {
   if (!is_told_ || !cloud.time_s || !cloud.has_pose) return false;
   for (std::size_t i = 0; i < votes_.size(); ++i)
-    if (mayPass(cloud, votes_[i].places, boxes_[i])) return true;
+    if (mayPass(cloud, places_[i], boxes_[i])) return true;
   return false;
 }
 
 std::unique_ptr<ScanView> PresenceVoting::view(const Cloud& cloud) const {
   std::vector<std::size_t> passed;
   for (std::size_t i = 0; i < votes_.size(); ++i)
-    if (mayPass(cloud, votes_[i].places, boxes_[i])) passed.push_back(i);
+    if (mayPass(cloud, places_[i], boxes_[i])) passed.push_back(i);
   return std::make_unique<View>(*this, *cloud.time_s, std::move(passed));
 }
 
@@ -129,26 +111,17 @@ void PresenceVoting::take(const ScanView& seen) {
   const auto& view = dynamic_cast<const View&>(seen);
   for (std::size_t i = 0; i < view.passed().size(); ++i)
     if (const perception::ScanVotes& votes = view.votes()[i]; (votes.hits | votes.seen_through).any())
-      perception::addVotes(votes_[view.passed()[i]].votes, votes);
+      perception::addVotes(votes_[view.passed()[i]], votes);
 }
 
 std::vector<ObjectVotes> PresenceVoting::finish() {
   return std::move(votes_);
 }
 
-std::vector<ObjectVotes> presenceVotes(const perception::Scene& scene, std::span<const rules::SemanticObject> objects,
-                                       const std::vector<Cloud>& clouds,
-                                       const std::function<scan::Scan(const Cloud&)>& load, unsigned threads) {
-  PresenceVoting voting(scene, objects, clouds, threads);
-  passRays(clouds, std::array<RayObserver*, 1>{&voting}, load);
-  return voting.finish();
-}
-
-std::vector<std::optional<perception::Presence>> presenceOfObjects(const std::vector<ObjectVotes>& votes) {
+std::vector<std::optional<perception::Presence>> presenceFrom(const std::vector<ObjectVotes>& votes) {
   std::vector<std::optional<perception::Presence>> presence;
   presence.reserve(votes.size());
-  for (const ObjectVotes& object : votes)
-    presence.push_back(presenceOf(object.votes, perception::visibilityOf(object.votes), {}));
+  for (const ObjectVotes& object : votes) presence.push_back(presenceOf(object, perception::visibilityOf(object), {}));
   return presence;
 }
 

@@ -4,7 +4,6 @@
 
 #include <array>
 #include <cstring>
-#include <map>
 #include <string>
 
 #include "base/content_hash.hpp"
@@ -37,7 +36,7 @@ Row rowOf(const ContentHash& cause, const MaybePresence& presence) {
   return row;
 }
 
-MaybePresence presenceFrom(const Row& row) {
+MaybePresence presenceOf(const Row& row) {
   if ((row.has & 1U) == 0) return std::nullopt;
   perception::Presence presence{row.times[0], row.times[1], {}, {}};
   if ((row.has & 2U) != 0) presence.seen_empty_s = row.times[2];
@@ -61,39 +60,38 @@ ContentHash hashOf(const Cloud& cloud) {
 
 }  // namespace
 
-PresenceUpdate::PresenceUpdate(const rdf::ReadTransaction& transaction, const perception::Scene& scene,
-                               std::span<const rules::SemanticObject> objects, const std::vector<Cloud>& clouds,
-                               unsigned threads)
-    : causes_(objects.size()), presence_(objects.size()) {
-  for (const rules::SemanticObject& object : objects) ids_.push_back(object.id);
+PresenceUpdate::PresenceUpdate(const rdf::ReadTransaction& transaction, std::span<const RayTarget> targets,
+                               const std::vector<Cloud>& clouds, unsigned threads)
+    : causes_(targets.size()), presence_(targets.size()) {
+  for (const RayTarget& target : targets) ids_.push_back(target.object);
   const std::vector<const Cloud*> timed = timedClouds(clouds);
   is_told_ = timed.size() >= 2;
   if (!is_told_) return;
   std::vector<ContentHash> cloud_hash;
   for (const Cloud* cloud : timed) cloud_hash.push_back(hashOf(*cloud));
-  std::vector<rules::SemanticObject> asked;
-  for (std::size_t i = 0; i < objects.size(); ++i) {
-    const std::vector<Eigen::Vector3d> places = placesOn(scene, objects[i]);
+  std::vector<std::span<const Eigen::Vector3d>> asked;
+  for (std::size_t i = 0; i < targets.size(); ++i) {
+    const std::span<const Eigen::Vector3d> places = targets[i].places;
     if (places.empty()) continue;  // the ground: it has no row
     const Eigen::AlignedBox3d box = boxAround(places);
     ContentHasher hasher;
-    hasher.add(kVersion).addBytes(places.data(), places.size() * sizeof(Eigen::Vector3d));
+    hasher.add(kVersion).addBytes(places.data(), places.size_bytes());
     for (std::size_t c = 0; c < timed.size(); ++c)
       if (mayPass(*timed[c], places, box)) hasher.add(cloud_hash[c]);
     causes_[i] = hasher.finish();
     if (const auto row = storedRow(transaction, ids_[i]); row && row->cause == *causes_[i]) {
-      presence_[i] = presenceFrom(*row);
+      presence_[i] = presenceOf(*row);
     } else {
       unknown_.push_back(i);
-      asked.push_back(objects[i]);
+      asked.push_back(places);
     }
   }
-  if (!asked.empty()) voting_.emplace(scene, asked, clouds, threads);
+  if (!asked.empty()) voting_.emplace(std::move(asked), clouds, threads);
 }
 
 std::vector<MaybePresence> PresenceUpdate::finish(rdf::WriteTransaction& transaction, Covered covered) {
   if (voting_) {
-    const std::vector<MaybePresence> computed = presenceOfObjects(voting_->finish());
+    const std::vector<MaybePresence> computed = presenceFrom(voting_->finish());
     for (std::size_t u = 0; u < unknown_.size(); ++u) presence_[unknown_[u]] = computed[u];
   }
   if (covered == Covered::All)

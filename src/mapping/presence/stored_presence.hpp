@@ -10,10 +10,9 @@
 #include "mapping/clouds/cloud.hpp"
 #include "mapping/presence/object_rows.hpp"
 #include "mapping/presence/presence_votes.hpp"
-#include "perception/segments/scene.hpp"
+#include "mapping/presence/ray_targets.hpp"
 #include "perception/visibility/presence.hpp"
 #include "rdf/file/environment.hpp"
-#include "rules/objects/semantic_object.hpp"
 
 namespace cluxel::mapping {
 
@@ -21,20 +20,21 @@ namespace cluxel::mapping {
 /// stored presence, that is taken.
 class PresenceUpdate {
  public:
-  PresenceUpdate(const rdf::ReadTransaction& transaction, const perception::Scene& scene,
-                 std::span<const rules::SemanticObject> objects, const std::vector<Cloud>& clouds, unsigned threads);
+  /// `targets` must outlive it.
+  PresenceUpdate(const rdf::ReadTransaction& transaction, std::span<const RayTarget> targets,
+                 const std::vector<Cloud>& clouds, unsigned threads);
   /// Looks at rays for the objects of which presence is not known; null when there are none.
   RayObserver* observer() { return voting_ ? &*voting_ : nullptr; }
   std::size_t unknownCount() const { return unknown_.size(); }
-  /// When each object was there, after the observer has seen all rays. Stores the outcome.
+  /// When each was there, after the observer has seen all rays. Stores the outcome.
   std::vector<std::optional<perception::Presence>> finish(rdf::WriteTransaction& transaction, Covered covered);
 
  private:
   bool is_told_ = false;                                       ///< two clouds or more have a time and a pose
-  std::vector<ContentHash> ids_;                               ///< of each object
+  std::vector<ContentHash> ids_;                               ///< of each target
   std::vector<std::optional<ContentHash>> causes_;             ///< of its row; absent when it has none
-  std::vector<std::optional<perception::Presence>> presence_;  ///< of each object
-  std::vector<std::size_t> unknown_;                           ///< numbers of objects
+  std::vector<std::optional<perception::Presence>> presence_;  ///< of each target
+  std::vector<std::size_t> unknown_;                           ///< numbers of targets
   std::optional<PresenceVoting> voting_;
 };
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <tuple>
 #include <utility>
 
@@ -16,7 +17,9 @@
 #include "mapping/map_tables.hpp"
 #include "mapping/statements/statement_facts.hpp"
 #include "mapping/strips/map_strips.hpp"
+#include "mapping/strips/strip_presence.hpp"
 #include "mapping/strips/whole_update.hpp"
+#include "mapping/window/passed_objects.hpp"
 #include "perception/segments/summary_tile.hpp"
 
 namespace cluxel::mapping {
@@ -33,6 +36,7 @@ class GrowthUpdate {
         transaction_(work.transaction),
         before_(work.transaction.before()),
         changes_(changes),
+        former_(former),
         all_(storedTiles(work.transaction)) {
     params_.max_window_share = 2;  // a window never gives way to the whole map
     for (const auto& [tile, summary] : changes.former_summaries)
@@ -41,6 +45,7 @@ class GrowthUpdate {
     cluxels_ = cluxelsIn(new_) + cluxelsIn(other_);
     strip_.told_clouds = former.clouds;
     strip_.keeps_lists = params_.lists_objects;
+    strip_.later = &made_;
   }
   GrowthUpdate(const GrowthUpdate&) = delete;
   GrowthUpdate& operator=(const GrowthUpdate&) = delete;
@@ -66,6 +71,8 @@ class GrowthUpdate {
       returnFreeMemory();
     }
     if (!std::all_of(wide.begin(), wide.end(), [&](const ContentHash& id) { return isThere(id); })) return decideRest();
+    tellPassedObjects();
+    tellPresence(work_, made_);
     inferFacts(transaction_, work_.parsed.inputs, work_.sink, work_.check);
     const rdf::ReadTransaction& reading = transaction_;
     update.statements = toldOutcomes(rdf::QuadReader(reading));
@@ -116,6 +123,15 @@ class GrowthUpdate {
     changes.former_summaries.emplace(tile, std::string(requiredBlock(before_, tables::kSummaries, tile)));
   }
 
+  /// Of objects that no strip has made again.
+  void tellPassedObjects() {
+    work_.stages.readAsBefore(nullptr, {});
+    const std::vector<Cloud> clouds = storedClouds(transaction_);
+    std::set<ContentHash> passed = passedObjects(transaction_, changedRays(former_.clouds, seenClouds(clouds)));
+    std::erase_if(passed, [&](const ContentHash& object) { return made_.contains(object); });
+    updatePassedObjects(transaction_, work_.parsed, work_.stages, clouds, std::move(passed), nullptr, params_.threads);
+  }
+
   /// A strip cannot be decided alone: the whole map is.
   SemanticUpdate decideRest() {
     work_.stages.readAsBefore(nullptr, {});
@@ -148,6 +164,7 @@ class GrowthUpdate {
   rdf::WriteTransaction& transaction_;
   rdf::ReadTransaction before_;
   const OutputChanges& changes_;
+  const SemanticState& former_;
   TileSet all_;                ///< of the map
   TileSet new_;                ///< that are not shown yet
   TileSet other_;              ///< that were there and have other outputs now: so far they count as they were
@@ -155,6 +172,7 @@ class GrowthUpdate {
   TileSet hidden_;             ///< of the other ones: those beside settled ones
   std::uint64_t cluxels_ = 0;  ///< of new and other tiles
   UpdateParams params_ = work_.params;
+  LaterTargets made_;
   MapStrip strip_;
   ObjectDifference difference_;
 };

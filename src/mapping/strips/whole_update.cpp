@@ -14,6 +14,7 @@
 #include "mapping/splits_store.hpp"
 #include "mapping/statements/statement_facts.hpp"
 #include "mapping/strips/map_strips.hpp"
+#include "mapping/strips/strip_presence.hpp"
 #include "mapping/window/former_objects.hpp"
 #include "mapping/window/map_window.hpp"
 #include "perception/segments/summary_tile.hpp"
@@ -57,8 +58,9 @@ class StripUpdate {
   std::optional<SemanticUpdate> run() {
     SemanticUpdate update;
     rules::KnownSplits splits = storedSplits(transaction_);
+    LaterTargets made;
     MapStrip strip;
-    strip.splits = &splits;
+    strip.splits = &splits, strip.later = &made;
     begin(strip);
     for (const TileSet& tiles : strips()) {
       if (work_.check) work_.check(0);
@@ -79,6 +81,7 @@ class StripUpdate {
       return record && !record->tiles.empty();
     };
     if (!std::all_of(strip.wide.begin(), strip.wide.end(), is_there)) return std::nullopt;  // else its facts stay
+    tellPresence(work_, made);
     eraseRowsWithoutObject(transaction_);
     inferFacts(transaction_, work_.parsed.inputs, work_.sink, work_.check);
     storeSplits(transaction_, splits);

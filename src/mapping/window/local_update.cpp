@@ -92,7 +92,7 @@ class LocalUpdate {
     }
     if (lent_ != nullptr)
       more_ = lent_->passed();
-    else
+    else if (strip_ == nullptr)
       passed_ = passedObjects(transaction_, changedRays(before_.clouds, now_.clouds));
     const std::vector<SemanticState> maps = lent_ != nullptr ? lent_->statesOfMaps() : std::vector{before_};
     WindowStatements statements(transaction_, parsed_, stages_, clouds_, changes_, map_, maps, now_);
@@ -262,13 +262,14 @@ class LocalUpdate {
     const std::optional<WayGraph> ways = have_ways ? std::optional(storedWays(transaction_)) : std::nullopt;
     const RetiredThings retired = strip_ != nullptr ? strip_->retired : RetiredThings{};
     writeWindowFacts(transaction_, {parsed_, stages_, clouds_, strip_ != nullptr ? strip_->told_clouds : before_.clouds,
-                                    decided, statements, retired, ways ? &*ways : nullptr, touched, params_.threads});
+                                    decided, statements, retired, ways ? &*ways : nullptr, touched, params_.threads,
+                                    strip_ != nullptr ? strip_->later : nullptr});
     writeLayers(transaction_, decided, changes_);
     if (strip_ != nullptr) eraseRetiredRecords(decision);
     statements.store(transaction_, window);
     if (strip_ == nullptr && !now_.statements.empty())
       update.statements = toldOutcomes(rdf::QuadReader(static_cast<const rdf::ReadTransaction&>(transaction_)));
-    updatePassedObjects(transaction_, parsed_, stages_, clouds_, passed_, window, params_.threads);
+    updatePassedObjects(transaction_, parsed_, stages_, clouds_, passed_, &window, params_.threads);
     if (check_) check_(0);
     if (strip_ == nullptr) inferFacts(transaction_, parsed_.inputs, sink_, check_);
     now_.objects = update.objects, now_.cluxels = update.cluxels, now_.primitives = update.primitives;
@@ -278,7 +279,7 @@ class LocalUpdate {
     return update;
   }
 
-  /// Of former objects that the strip did not make again. Their rows of presence are gone already.
+  /// Of former objects that the strip did not make again.
   void eraseRetiredRecords(const WindowDecision& decision) {
     std::set<ContentHash> gone = strip_->retired.objects;
     for (const rules::SemanticObject& object : decision.objects) gone.erase(object.id);

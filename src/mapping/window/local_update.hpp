@@ -35,11 +35,12 @@ struct MapStrip {
   rules::KnownSplits* splits = nullptr;  ///< may be absent
   perception::TileSet as_before;         ///< tiles that count as they were; their cluxels may get other seeds
   bool keeps_lists = false;              ///< SemanticUpdate tells the objects that differ
+  LaterTargets* later = nullptr;         ///< gets the objects that were made: rays are looked at after all strips
 };
 
-/// Decides in a window around the changed tiles and writes all that follows; of a strip (else null) all but inference.
-/// `lent`: what another map decided, or null. Absent when the whole map has to be computed; then no decision was
-/// written.
+/// Decides in a window around the changed tiles and writes all that follows; of a strip (else null) all but inference
+/// and what rays tell. `lent`: what another map decided, or null. Absent when the whole map has to be computed; then no
+/// decision was written.
 std::optional<SemanticUpdate> updateAround(const LayerWork& work, OutputChanges& changes, ChangedInputs inputs,
                                            LentDecisions* lent, const MapStrip* strip);
 

@@ -108,12 +108,10 @@ class PassedUpdate {
     std::vector<rules::SemanticObject> asked;
     for (auto& [id, object] : together.objects)
       if (!object.parts.empty()) asked.push_back(std::move(object));
-    const ObjectPresence presence = updatePresence(transaction_, parsed_.rules, scene, asked, clouds_, {}, threads_);
-    for (std::size_t i = 0; i < asked.size(); ++i) {
-      const rdf::TermId subject = facts_.iri(rdf::iriOfObject(asked[i].id));
-      for (const std::string_view property : kRayProperties) patch_.replace(subject, facts_.property(property));
-      addRayFacts(subject, presence.times[i], presence.rays[i], facts_);
-    }
+    const ObjectPresence presence =
+        updatePresence(transaction_, rayTargets(scene, asked, parsed_.rules), Covered::Some, clouds_, {}, threads_);
+    for (std::size_t i = 0; i < asked.size(); ++i)
+      replaceRayFacts(facts_.iri(rdf::iriOfObject(asked[i].id)), presence.times[i], presence.rays[i], patch_, facts_);
   }
 
   rdf::WriteTransaction& transaction_;
@@ -152,12 +150,14 @@ TileSet tilesOfPassedObjects(const rdf::ReadTransaction& transaction, const std:
 }
 
 void updatePassedObjects(rdf::WriteTransaction& transaction, const ParsedInputs& parsed, TileStages& stages,
-                         const std::vector<Cloud>& clouds, const std::set<ContentHash>& objects,
-                         const MapWindow& window, unsigned threads) {
-  std::set<ContentHash> beyond;
-  for (const ContentHash& id : objects)
-    if (const auto record = storedRecord(transaction, id); record && !isInside(*record, window)) beyond.insert(id);
-  if (!beyond.empty()) PassedUpdate(transaction, parsed, stages, clouds, threads).run(beyond);
+                         const std::vector<Cloud>& clouds, std::set<ContentHash> objects, const MapWindow* window,
+                         unsigned threads) {
+  if (window != nullptr)
+    std::erase_if(objects, [&](const ContentHash& id) {
+      const auto record = storedRecord(transaction, id);
+      return record && isInside(*record, *window);
+    });
+  if (!objects.empty()) PassedUpdate(transaction, parsed, stages, clouds, threads).run(objects);
 }
 
 }  // namespace cluxel::mapping

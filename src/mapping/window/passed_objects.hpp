@@ -21,11 +21,11 @@ std::set<ContentHash> passedObjects(const rdf::ReadTransaction& transaction,
 perception::TileSet tilesOfPassedObjects(const rdf::ReadTransaction& transaction,
                                          const std::vector<Eigen::AlignedBox3d>& rays);
 
-/// Computes and tells when those of `objects` were there that the window does not hold as a whole, and how many rays
-/// passed them, from the rays of all clouds of the map. The stored layers of their tiles must be those of the stored
-/// outputs. Reads about two hundred tiles at a time.
+/// Computes and tells when those of `objects` were there that the window, if there is one, does not hold as a whole,
+/// and how many rays passed them, from the rays of all clouds of the map. The stored layers of their tiles must be
+/// those of the stored outputs. Reads about two hundred tiles at a time.
 void updatePassedObjects(rdf::WriteTransaction& transaction, const ParsedInputs& parsed, TileStages& stages,
-                         const std::vector<Cloud>& clouds, const std::set<ContentHash>& objects,
-                         const MapWindow& window, unsigned threads);
+                         const std::vector<Cloud>& clouds, std::set<ContentHash> objects, const MapWindow* window,
+                         unsigned threads);
 
 }  // namespace cluxel::mapping

@@ -121,11 +121,8 @@ class FactWriting {
       for (const ContentHash& other : near[i])
         facts_.link(iri(rdf::iriOfObject(other)), "near", iri(rdf::iriOfObject(made_[i].id)));
     }
-    for (const KeptPresence& kept : presence.kept) {
-      const rdf::TermId subject = iri(rdf::iriOfObject(kept.object));
-      for (const std::string_view property : kRayProperties) patch_.replace(subject, facts_.property(property));
-      addRayFacts(subject, kept.times, kept.rays, facts_);
-    }
+    for (const KeptPresence& kept : presence.kept)
+      replaceRayFacts(iri(rdf::iriOfObject(kept.object)), kept.times, kept.rays, patch_, facts_);
   }
 
   std::vector<std::vector<ContentHash>> nearOfMade() const {

@@ -10,6 +10,7 @@
 #include "mapping/clouds/cloud.hpp"
 #include "mapping/facts/semantic_layer.hpp"
 #include "mapping/layers/semantic_state.hpp"
+#include "mapping/presence/ray_targets.hpp"
 #include "mapping/window/map_window.hpp"
 #include "mapping/window/window_change.hpp"
 #include "mapping/window/window_decision.hpp"
@@ -35,6 +36,7 @@ struct WindowFacts {
   const WayGraph* ways = nullptr;             ///< null when they are as before
   const std::set<std::string>& more_patches;  ///< of the ground (IRIs) that nothing may touch any more
   unsigned threads = 1;
+  LaterTargets* later = nullptr;  ///< gets the objects that were made, if rays are not to be looked at yet
 };
 
 /// Makes graph observed, and what is kept about presence and class-wide objects, what a computation over the whole map

@@ -23,7 +23,7 @@ struct WindowPresence {
   std::vector<KeptPresence> kept;  ///< of objects that the window holds as a whole
 };
 
-/// Computes and stores what follows from the rays of the map's clouds.
+/// Computes and stores what follows from the rays of the map's clouds; nothing where that is to be done later.
 WindowPresence updatePresenceIn(rdf::WriteTransaction& transaction, const WindowFacts& facts,
                                 const std::vector<rules::SemanticObject>& made);
 

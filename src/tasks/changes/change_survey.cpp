@@ -12,6 +12,7 @@
 #include "mapping/map_regions.hpp"
 #include "mapping/presence/presence_votes.hpp"
 #include "mapping/presence/ray_pass.hpp"
+#include "mapping/presence/ray_targets.hpp"
 #include "tasks/changes/changed_parts.hpp"
 #include "tasks/changes/kept_cells.hpp"
 #include "tasks/changes/kept_cluxels.hpp"
@@ -110,13 +111,16 @@ class Survey {
     }
     PointCells cells = cellsIn(region, may_change);
     FirstFindings findings(cluxels, wanted);
-    mapping::PresenceVoting voting(region.scene, region.objects, clouds_, threads_);
+    std::vector<std::vector<Eigen::Vector3d>> places;
+    for (const rules::SemanticObject& object : region.objects)
+      places.push_back(mapping::placesOn(region.scene, object));
+    mapping::PresenceVoting voting({places.begin(), places.end()}, clouds_, threads_);
     for (const TimedScan& scan : scans_) look(region, scan, findings, cells, voting);
     const RegionFindings found = findings.take(std::move(may_change));
     for (const perception::TileKey& tile : region.tiles) unread_.erase(tile);
     keepCluxels(region, found);
     keepCells(region, found.changes, std::move(cells));
-    addStates(region, voting.finish());
+    addStates(region, places, voting.finish());
   }
 
   PointCells cellsIn(const mapping::MapRegion& region, const std::vector<bool>& may_change) {
@@ -163,10 +167,11 @@ class Survey {
     kept_cluxels_.add(region, found, unread_);
   }
 
-  void addStates(const mapping::MapRegion& region, const std::vector<mapping::ObjectVotes>& votes) {
+  void addStates(const mapping::MapRegion& region, const std::vector<std::vector<Eigen::Vector3d>>& places,
+                 const std::vector<mapping::ObjectVotes>& votes) {
     for (std::size_t i = 0; i < region.objects.size(); ++i) {
-      if (votes[i].places.empty()) continue;
-      ObjectStates states = statesOf(region.number_of_objects[i], votes[i].votes, since_s_);
+      if (places[i].empty()) continue;
+      ObjectStates states = statesOf(region.number_of_objects[i], votes[i], since_s_);
       const auto geometry = mapping::geometryOf(region.scene.cluxels, mapping::cluxelsOf(region.objects[i]));
       states.box = {geometry.min, geometry.max};
       states.centre = geometry.box.center.head<2>();

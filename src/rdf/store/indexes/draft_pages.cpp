@@ -49,9 +49,9 @@ std::uint8_t* DraftPages::take() {
 void DraftPages::addChunk() {
   chunks_.reserve(chunks_.size() + 1);
   free_.reserve(free_.size() + kPagesOfChunk);
-  void* const chunk = chunks_.size() < kChunksInMemory ? ::mmap(nullptr, kChunkBytes, PROT_READ | PROT_WRITE,
-                                                                MAP_PRIVATE | MAP_ANONYMOUS, -1, 0)
-                                                       : mapOfFile();
+  void* const chunk = chunks_.size() < kChunksInMemory
+                          ? ::mmap(nullptr, kChunkBytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0)
+                          : mapOfFile();
   if (chunk == MAP_FAILED) throw std::bad_alloc();
   chunks_.push_back(chunk);
   for (std::size_t page = kPagesOfChunk; page-- > 0;)
