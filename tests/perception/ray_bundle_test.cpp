@@ -64,6 +64,28 @@ TEST(RayBundle, AgreesWithAllRaysOneByOne) {
   for (const int count : seen) EXPECT_GT(count, 20);
 }
 
+/// Cells of direction are found by angles that are nearly right: rays at the edges of cells must not be lost.
+TEST(DirectionIndex, FindsEachRayInItsOwnDirection) {
+  constexpr double kHalfDegree = std::numbers::pi / 360;
+  std::mt19937 random(4);
+  std::normal_distribution<double> off(0, 2e-6);
+  std::uniform_int_distribution<int> column(-360, 360), row(-178, 178);
+  std::vector<Eigen::Vector3f> ends;
+  for (int i = 0; i < 50'000; ++i) {
+    const double azimuth = kHalfDegree * column(random) + off(random);
+    const double elevation = kHalfDegree * row(random) + off(random);
+    const Eigen::Vector3d direction(std::cos(azimuth) * std::cos(elevation), std::sin(azimuth) * std::cos(elevation),
+                                    std::sin(elevation));
+    ends.push_back((10 * direction).cast<float>());
+  }
+  const DirectionIndex index(ends);
+  for (const Eigen::Vector3f& end : ends) {
+    int near = 0;
+    index.forEachNear(end.cast<double>(), 1e-6, [&](double, double) { ++near; });
+    ASSERT_GT(near, 0) << end.transpose();
+  }
+}
+
 /// A wall 10 m ahead, as a sensor at `origin` sees it, with rays every `step_m` on the wall.
 std::vector<Eigen::Vector3f> wallAhead(double step_m) {
   std::vector<Eigen::Vector3f> ends;

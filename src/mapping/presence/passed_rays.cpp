@@ -16,7 +16,7 @@ namespace cluxel::mapping {
 namespace {
 
 /// The version of the computation. A new number invalidates all stored counts.
-constexpr std::uint32_t kCountsVersion = 1;
+constexpr std::uint32_t kCountsVersion = 2;
 
 /// Rays within a decimetre of a place: gaps between bars are not much wider.
 constexpr perception::RayParams kThroughParams{.near_m = 0.10, .behind_m = 0.50};

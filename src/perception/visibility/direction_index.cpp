@@ -21,6 +21,27 @@ Direction directionOf(const Eigen::Vector3d& v) {
   return {std::atan2(v.y(), v.x()), std::atan2(v.z(), v.head<2>().norm())};
 }
 
+/// How far directions of rays may be off: less than this [rad].
+constexpr double kDirectionError_rad = 1e-5;
+
+/// Nearly std::atan2(), several times as fast: a polynomial of least maximum error (1.7e-6 rad, and rounding).
+float nearlyAtan2(float y, float x) {
+  const float width = std::abs(x), height = std::abs(y);
+  const float larger = std::max(width, height), smaller = std::min(width, height);
+  const float t = larger > 0 ? smaller / larger : 0, s = t * t;
+  float angle = -0.0117191357F;
+  for (const float factor : {0.0526473515F, -0.116426482F, 0.193540376F, -0.332622828F, 0.999977219F})
+    angle = angle * s + factor;
+  angle *= t;
+  angle = height > width ? std::numbers::pi_v<float> / 2 - angle : angle;
+  angle = x < 0 ? std::numbers::pi_v<float> - angle : angle;
+  return std::copysign(angle, y);
+}
+
+Direction directionOfRay(const Eigen::Vector3f& v) {
+  return {nearlyAtan2(v.y(), v.x()), nearlyAtan2(v.z(), v.head<2>().norm())};
+}
+
 int rowOf(double elevation) {
   return std::clamp(static_cast<int>((elevation + std::numbers::pi / 2) / kCell_rad), 0, kRows - 1);
 }
@@ -41,7 +62,7 @@ DirectionIndex::DirectionIndex(std::vector<Eigen::Vector3f> ends)
     : first_(static_cast<std::size_t>(kRows) * kColumns + 1, 0), rays_(ends.size()) {
   std::vector<std::uint32_t> cell(ends.size());
   for (std::size_t i = 0; i < ends.size(); ++i) {
-    const Direction direction = directionOf(ends[i].cast<double>());
+    const Direction direction = directionOfRay(ends[i]);
     cell[i] = static_cast<std::uint32_t>(cellOf(rowOf(direction.elevation), columnOf(direction.azimuth)));
     ++first_[cell[i] + 1];
   }
@@ -52,7 +73,7 @@ DirectionIndex::DirectionIndex(std::vector<Eigen::Vector3f> ends)
 
 DirectionIndex::Window DirectionIndex::windowAround(const Eigen::Vector3d& place, double near_m) {
   const Direction direction = directionOf(place);
-  const double half_angle = std::asin(std::min(1.0, near_m / place.norm()));
+  const double half_angle = std::asin(std::min(1.0, near_m / place.norm())) + kDirectionError_rad;
   // A circle around the direction is wider in azimuth the nearer it is to the zenith.
   const double narrowest = std::cos(std::min(std::abs(direction.elevation) + half_angle, std::numbers::pi / 2));
   const double half_width = narrowest * std::numbers::pi > half_angle ? half_angle / narrowest : std::numbers::pi;

@@ -25,13 +25,15 @@ class DirectionIndex {
   template <typename Visit>
   void forEachNear(const Eigen::Vector3d& place, double near_m, Visit&& visit) const {
     const Window window = windowAround(place, near_m);
+    const double aside_limit = place.squaredNorm() - near_m * near_m;
     for (int row = window.low_row; row <= window.high_row; ++row)
       for (int column = window.low_column; column < window.low_column + window.columns; ++column)
         for (const Eigen::Vector3f& ray : raysIn(row, column)) {
           const Eigen::Vector3d end = ray.cast<double>();
-          const double range_m = end.norm(), along_m = place.dot(end) / range_m;
-          const double aside_squared = place.squaredNorm() - along_m * along_m;
-          if (along_m > 0 && aside_squared <= near_m * near_m) visit(range_m, along_m);
+          const double range_squared = end.squaredNorm(), product = place.dot(end);
+          if (product <= 0 || product * product < aside_limit * range_squared) continue;
+          const double range_m = std::sqrt(range_squared);
+          visit(range_m, product / range_m);
         }
   }
 

@@ -15,9 +15,9 @@ constexpr double kMinRange_m = 0.3;  ///< of a place: nearer ones are the sensor
 constexpr std::size_t kRaysBelow = 3;
 
 double farthestOf(const std::vector<Eigen::Vector3f>& ends) {
-  double max_m = 0;
-  for (const Eigen::Vector3f& end : ends) max_m = std::max(max_m, end.cast<double>().norm());
-  return max_m;
+  double max_squared = 0;
+  for (const Eigen::Vector3f& end : ends) max_squared = std::max(max_squared, end.cast<double>().squaredNorm());
+  return std::sqrt(max_squared);
 }
 
 }  // namespace
@@ -73,6 +73,7 @@ void forEachRayBundle(const scan::Scan& scan, const std::function<void(const Ray
   if (points.origin.empty() && !scan.has_pose) return;
   Eigen::Vector3d origin = scan.T_map_sensor.translation();
   std::vector<Eigen::Vector3f> ends;
+  if (points.origin.empty()) ends.reserve(points.size());
   const auto close = [&] {
     if (!ends.empty()) visit(RayBundle(origin, std::move(ends)));
     ends = {};
