@@ -7,7 +7,7 @@
 namespace cluxel {
 
 void returnFreeMemory() {
-  constexpr std::size_t kKept = 200'000'000;
+  constexpr std::size_t kKept = 300'000'000;
   if (::mallinfo2().fordblks > kKept) ::malloc_trim(0);
 }
 

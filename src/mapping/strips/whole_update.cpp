@@ -34,11 +34,16 @@ void eraseAll(rdf::WriteTransaction& transaction, std::string_view table) {
   for (const std::string& key : keys) transaction.eraseBlock(table, key);
 }
 
-std::uint64_t storedCluxels(const rdf::ReadTransaction& transaction) {
+/// Only tiles that are not at hand are read.
+std::uint64_t storedCluxels(const LayerWork& work) {
+  const auto& at_hand = work.stages.summaries();
   std::uint64_t cluxels = 0;
-  for (const TileKey& tile : storedTiles(transaction))
-    if (const auto block = transaction.block(tables::kSummaries, tables::keyOf(tile)))
+  for (const TileKey& tile : storedTiles(work.transaction)) {
+    if (const auto summary = at_hand.find(tile); summary != at_hand.end())
+      cluxels += summary->second.size();
+    else if (const auto block = work.transaction.block(tables::kSummaries, tables::keyOf(tile)))
       cluxels += perception::cluxelsIn(*block);
+  }
   return cluxels;
 }
 
@@ -168,7 +173,7 @@ bool makesWideObjectsButGround(const rules::RuleSet& rules) {
 std::optional<SemanticUpdate> updateInStrips(const LayerWork& work) {
   const std::optional<SemanticState> former = storedSemanticState(work.transaction);
   if (!canBeInStrips(work)) return std::nullopt;
-  const std::uint64_t cluxels = storedCluxels(work.transaction);
+  const std::uint64_t cluxels = storedCluxels(work);
   if (cluxels <= work.params.whole_cluxels) return std::nullopt;
   if (former) {
     const MapInputs inputs = storedInputs(work.transaction);
