@@ -7,6 +7,7 @@
 #include "mapping/change/folder_watch.hpp"
 #include "mapping/change/map_compaction.hpp"
 #include "mapping/change/map_update.hpp"
+#include "mapping/change/rdf_loading.hpp"
 #include "mapping/change/statement_change.hpp"
 #include "mapping/free_space.hpp"
 #include "mapping/killed_change.hpp"
@@ -86,6 +87,9 @@ TEST_F(EarlyCommitLeft, OfAFirstBuildIsNoMap) {
   leave([&] { fs::remove(map()); }, build_all);
   EXPECT_TRUE(isToBuild(map()));
   EXPECT_THROW(requireSomething(Environment::open(map(), OpenMode::ReadOnly)->read(), map()), Error);
+  const fs::path statements = folder.path() / "statements.nt";
+  writeFile(statements, "<http://a> <http://b> <http://c> .\n");
+  EXPECT_THROW(loadRdfFiles(map(), {statements}, {}, silence()), Error);
   build_all(silence());
   EXPECT_FALSE(isLeft());
   EXPECT_TRUE(canonicalText(map()) == builtText(campus->files(), *inputs));
@@ -94,9 +98,15 @@ TEST_F(EarlyCommitLeft, OfAFirstBuildIsNoMap) {
 TEST_F(EarlyCommitLeft, GoesWithACompaction) {
   leaveByExtension();
   EXPECT_TRUE(canonicalText(map()) == builtText({file(0)}, *inputs));
+  const fs::path copy = folder.path() / "copy.clx";
+  copyCompacted(map(), copy);
+  EXPECT_TRUE(isLeft());
   compactMap(map());
   EXPECT_FALSE(isLeft());
   EXPECT_TRUE(canonicalText(map()) == builtText({file(0)}, *inputs));
+  EXPECT_FALSE(hasEarlyCommit(Environment::open(copy, OpenMode::ReadOnly)->read()));
+  EXPECT_EQ(fs::file_size(copy), fs::file_size(map()));
+  EXPECT_TRUE(canonicalText(copy) == canonicalText(map()));
 }
 
 TEST_F(EarlyCommitLeft, IsNotTakenForOutputsOfTheMap) {

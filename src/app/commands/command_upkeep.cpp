@@ -23,7 +23,7 @@ ExitCode compact(const UpkeepOptions& options, const Session& session) {
   if (options.output.empty())
     mapping::compactMap(options.map);
   else
-    rdf::Environment::open(options.map, rdf::OpenMode::ReadOnly)->compactTo(options.output);
+    mapping::copyCompacted(options.map, options.output);
   const auto after = fs::file_size(options.output.empty() ? options.map : options.output);
   const fs::path& written = options.output.empty() ? options.map : options.output;
   if (session.json)

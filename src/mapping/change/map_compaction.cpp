@@ -82,6 +82,11 @@ void compactMap(const fs::path& map, rdf::CopiedPages pages) {
   }
 }
 
+void copyCompacted(const fs::path& map, const fs::path& copy) {
+  rdf::Environment::open(map, rdf::OpenMode::ReadOnly)->compactTo(copy);
+  if (hasEarlyCommit(rdf::Environment::open(copy, rdf::OpenMode::ReadOnly)->read())) compactMap(copy);
+}
+
 void compactIfSparse(const fs::path& map, ProgressSink& sink, double max_free_share) {
   try {
     const rdf::FreeSpace space = rdf::freeSpaceOf(rdf::Environment::open(map, rdf::OpenMode::ReadOnly)->read());

@@ -15,6 +15,10 @@ namespace cluxel::mapping {
 /// then as before.
 void compactMap(const std::filesystem::path& map, rdf::CopiedPages pages = rdf::CopiedPages::Filled);
 
+/// Writes the same to a file that is not there yet; the map is only read. What a killed command left is not copied.
+/// Throws Error (StoreUnavailable); a part of the copy may be left then.
+void copyCompacted(const std::filesystem::path& map, const std::filesystem::path& copy);
+
 /// A finished map is made small, and what was retracted leaves the file. After other changes free pages may stay: the
 /// next change writes into them, and a rewrite after each would cost more than the change itself.
 inline constexpr double kMaxFreeShare = 0.05, kMaxFreeShareOfChanged = 0.25;

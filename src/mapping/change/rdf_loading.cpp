@@ -3,6 +3,7 @@
 #include "mapping/change/rdf_loading.hpp"
 
 #include "cluxel/error.hpp"
+#include "mapping/build/work_file.hpp"
 #include "mapping/change/map_update.hpp"
 #include "mapping/map_state.hpp"
 #include "rdf/file/map_replacement.hpp"
@@ -78,6 +79,7 @@ RdfLoadReport loadRdfFiles(const fs::path& store, const std::vector<fs::path>& f
                            ProgressSink& sink) {
   NewStore made(store);
   rdf::WriteTransaction transaction = rdf::writeMap(store);
+  requireSomething(transaction, store);
   const bool is_map = requireFinished(store, transaction);
   RdfLoadParams own = params;
   if (is_map && own.graph.empty()) own.graph = rdf::vocabulary::kGraphOperator;
