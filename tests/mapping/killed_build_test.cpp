@@ -90,6 +90,9 @@ TEST_F(EarlyCommitLeft, OfAFirstBuildIsNoMap) {
   const fs::path statements = folder.path() / "statements.nt";
   writeFile(statements, "<http://a> <http://b> <http://c> .\n");
   EXPECT_THROW(loadRdfFiles(map(), {statements}, {}, silence()), Error);
+  EXPECT_THROW(compactMap(map()), Error);
+  EXPECT_THROW(copyCompacted(map(), folder.path() / "copy.clx"), Error);
+  EXPECT_TRUE(isLeft());
   build_all(silence());
   EXPECT_FALSE(isLeft());
   EXPECT_TRUE(canonicalText(map()) == builtText(campus->files(), *inputs));
@@ -101,6 +104,7 @@ TEST_F(EarlyCommitLeft, GoesWithACompaction) {
   const fs::path copy = folder.path() / "copy.clx";
   copyCompacted(map(), copy);
   EXPECT_TRUE(isLeft());
+  EXPECT_FALSE(fs::exists(copy.string() + "-lock"));
   compactMap(map());
   EXPECT_FALSE(isLeft());
   EXPECT_TRUE(canonicalText(map()) == builtText({file(0)}, *inputs));

@@ -77,18 +77,21 @@ TEST(IndexDraft, HoldsWhatASetHolds) {
   change(draft, keys, {Key128{7} << 70U}, {Key128{8} << 70U});
 }
 
-/// Pages beyond the memory of a draft lie in a file, and are taken again when they are empty.
+/// Pages beyond the memory of a draft lie in a file. Those that are written anew are used again.
 TEST(IndexDraft, IsLargerThanItsMemory) {
   constexpr std::uint64_t kKeys = 5'000'000;  // 76 MiB
   const ScratchFolder folder;
   IndexDraft draft(folder.path());
   for (std::uint64_t key = 0; key < kKeys; ++key) draft.append(Key128{2 * key});
+  const std::size_t bytes = draft.bytes();
+  EXPECT_LE(bytes, 80'000'000U + (std::size_t{4} << 20U));
   std::vector<Key128> some;
   for (std::uint64_t key = 0; key < kKeys; key += 100) some.push_back(Key128{2 * key + 1});
   std::uint64_t added = 0, removed = 0;
   const IndexDraft::Listener listener{[&](Key128) { ++added; }, [&](Key128) { ++removed; }, [](std::size_t) {}};
   draft.change(some, {}, listener);
   draft.change({}, some, listener);
+  EXPECT_LE(draft.bytes(), 2 * bytes + (std::size_t{4} << 20U));  // each page became two
   EXPECT_EQ(added, some.size());
   EXPECT_EQ(removed, some.size());
   ASSERT_EQ(draft.size(), kKeys);
@@ -191,6 +194,20 @@ TEST_F(LargeChanges, AreReadInTheirTransactionAndWrittenWithIt) {
     for (const QuadIds& quad : written[threads]) ASSERT_TRUE(reader.contains(quad));
   }
   EXPECT_EQ(written[1], written[3]);
+}
+
+/// The folder of a temporary store is gone when its draft needs a file.
+TEST_F(LargeChanges, OfTemporaryStoresAreHeldToo) {
+  constexpr TermId kSubjects = 1'200'000;
+  const auto environment = Environment::temporary();
+  WriteTransaction transaction = environment->write();
+  QuadWriter writer(transaction);
+  const TermId first = writer.intern(Term::iri("p"));
+  for (TermId i = 0; i < kSubjects; ++i) writer.add(QuadIds{first + i, first, first, first});
+  writer.flush();
+  EXPECT_EQ(QuadReader(static_cast<const ReadTransaction&>(transaction)).size(), kSubjects);
+  transaction.commit();
+  EXPECT_EQ(QuadReader(environment->read()).size(), kSubjects);
 }
 
 TEST_F(LargeChanges, AreForgottenWithTheirTransaction) {

@@ -101,9 +101,9 @@ constexpr std::size_t kSumsOfFifthFormat = 56, kSumsOfThirdFormat = 40;
 /// Gives posg the sums of ranges that it had in the fifth format, which had no psog.
 void useRangesOfFifthFormat(Environment& environment) {
   WriteTransaction transaction = environment.write();
-  std::vector<Key128> keys;
+  std::vector<QuadKey> keys;
   QuadCursor quads = QuadReader(transaction).scan({}, QuadOrder::Posg);
-  for (QuadIds quad; quads.next(quad);) keys.push_back(toNumber(quad, QuadOrder::Posg));
+  for (QuadIds quad; quads.next(quad);) keys.push_back(toKey(toNumber(quad, QuadOrder::Posg)));
   RangeSummer sums(Table::Posg);
   sums.add(keys);
   storeRanges(transaction, Table::Posg, sums.take());

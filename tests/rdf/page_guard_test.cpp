@@ -327,7 +327,9 @@ TEST(RangeSums, AreReadAsTheyWereWritten) {
   std::vector<Key128> keys;
   for (std::uint32_t i = 1; i < 100'000; ++i) keys.push_back((Key128{i % 3} << 96U) + (Key128{i} << 64U) + i);
   std::sort(keys.begin(), keys.end());
-  summer.add(keys);
+  std::vector<QuadKey> stored(keys.size());
+  std::transform(keys.begin(), keys.end(), stored.begin(), toKey);
+  summer.add(stored);
   const RangeSums made = summer.take();
   EXPECT_EQ(made.ranges().size(), (keys.size() + RangeSums::kUsualKeys - 1) / RangeSums::kUsualKeys);
   const RangeSums read = RangeSums::fromBytes(made.bytes(), "map");

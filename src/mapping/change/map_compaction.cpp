@@ -12,6 +12,7 @@
 #include "cluxel/error.hpp"
 #include "mapping/build/build_lock.hpp"
 #include "mapping/build/early_commit.hpp"
+#include "mapping/build/work_file.hpp"
 #include "rdf/file/environment.hpp"
 #include "rdf/file/lock_file.hpp"
 #include "rdf/file/map_replacement.hpp"
@@ -66,6 +67,7 @@ void compactMap(const fs::path& map, rdf::CopiedPages pages) {
   const BuildLock no_build(file);
   const auto environment = rdf::Environment::open(file, rdf::OpenMode::ReadWrite);
   if (hasEarlyCommit(environment->read())) {  // of a killed command
+    requireSomething(environment->read(), map);
     rdf::WriteTransaction transaction = environment->write();
     eraseEarlyCommit(transaction);
     transaction.commit();
@@ -83,8 +85,13 @@ void compactMap(const fs::path& map, rdf::CopiedPages pages) {
 }
 
 void copyCompacted(const fs::path& map, const fs::path& copy) {
-  rdf::Environment::open(map, rdf::OpenMode::ReadOnly)->compactTo(copy);
-  if (hasEarlyCommit(rdf::Environment::open(copy, rdf::OpenMode::ReadOnly)->read())) compactMap(copy);
+  const auto environment = rdf::Environment::open(map, rdf::OpenMode::ReadOnly);
+  requireSomething(environment->read(), map);
+  environment->compactTo(copy);
+  const bool has_rest = hasEarlyCommit(rdf::Environment::open(copy, rdf::OpenMode::ReadOnly)->read());
+  if (has_rest) compactMap(copy);
+  std::error_code ignored;
+  fs::remove(rdf::lockFileOf(copy), ignored);  // nobody else knows of the copy yet
 }
 
 void compactIfSparse(const fs::path& map, ProgressSink& sink, double max_free_share) {

@@ -16,7 +16,8 @@ namespace cluxel::mapping {
 void compactMap(const std::filesystem::path& map, rdf::CopiedPages pages = rdf::CopiedPages::Filled);
 
 /// Writes the same to a file that is not there yet; the map is only read. What a killed command left is not copied.
-/// Throws Error (StoreUnavailable); a part of the copy may be left then.
+/// Throws Error (StoreUnavailable), also for a first build that was killed before its first commit; a part of the copy
+/// may be left then.
 void copyCompacted(const std::filesystem::path& map, const std::filesystem::path& copy);
 
 /// A finished map is made small, and what was retracted leaves the file. After other changes free pages may stay: the

@@ -28,7 +28,7 @@ std::vector<Eigen::Vector3d> placesOn(const perception::Scene& scene, const rule
 /// edge there. Rays over the edge are not meant.
 std::vector<Eigen::Vector3d> placesWithin(const perception::Scene& scene, const rules::SemanticObject& object);
 
-/// Of each object. What is a barrier, the classes of `rules` tell.
+/// The target of each object. The classes of `rules` tell which objects are barriers.
 std::vector<RayTarget> rayTargets(const perception::Scene& scene, std::span<const rules::SemanticObject> objects,
                                   const rules::RuleSet& rules);
 

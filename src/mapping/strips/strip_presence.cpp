@@ -13,6 +13,7 @@
 namespace cluxel::mapping {
 
 void tellPresence(const LayerWork& work, LaterTargets& targets) {
+  if (work.check) work.check(0);
   const std::vector<RayTarget> told = targets.take();
   const ObjectPresence presence = updatePresence(work.transaction, told, Covered::Some, storedClouds(work.transaction),
                                                  targets.removed(), work.params.threads);

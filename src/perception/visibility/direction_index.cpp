@@ -21,7 +21,7 @@ Direction directionOf(const Eigen::Vector3d& v) {
   return {std::atan2(v.y(), v.x()), std::atan2(v.z(), v.head<2>().norm())};
 }
 
-/// How far directions of rays may be off: less than this [rad].
+/// The error of the direction of a ray is less than this [rad].
 constexpr double kDirectionError_rad = 1e-5;
 
 /// Nearly std::atan2(), several times as fast: a polynomial of least maximum error (1.7e-6 rad, and rounding).

@@ -163,6 +163,9 @@ struct ReadTransaction::Impl {
   Impl& operator=(const Impl&) = delete;
   ~Impl();
   MDB_dbi table(Table which) const { return environment->table(which); }
+  bool has_failed = false;  ///< some indexes have a change that others lack
+  /// Throws Error (StoreUnavailable) when a change of the transaction failed: it can only be given up.
+  void requireSound() const;
   IndexDraft* draftOf(Table index) const { return drafts[static_cast<std::size_t>(index)].get(); }
   void check(int code, std::string_view doing) const { environment->check(code, doing); }
   /// `doing` is for the error, as in check().

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <functional>
 #include <optional>
 #include <stdexcept>
 #include <unordered_map>
@@ -75,6 +76,7 @@ struct QuadWriter::Impl {
   TermId internIri(const Term& term);
   /// Of the term whose record is in `record`.
   TermId internRecord();
+  void write(const std::function<void()>& work);
   void flushTerms();
   void flushGeometries(TermId first, TermId last);
   QuadDifference takeChanges();
@@ -105,6 +107,19 @@ TermId QuadWriter::Impl::internIri(const Term& term) {
   slot.id = internRecord();
   slot.iri = term.text;
   return slot.id;
+}
+
+/// After an error some tables and indexes have a change that others lack.
+void QuadWriter::Impl::write(const std::function<void()>& work) {
+  state().requireSound();
+  try {
+    work();
+    ++state().generation;
+  } catch (...) {
+    state().has_failed = true;
+    ++state().generation;
+    throw;
+  }
 }
 
 void QuadWriter::Impl::flushTerms() {
@@ -255,8 +270,7 @@ void QuadWriter::change(const QuadDifference& difference) {
   flush();
   if (difference.added.empty() && difference.removed.empty()) return;
   if (difference.added.size() + difference.removed.size() < kMaxPendingQuads) {
-    impl_->flushQuads(difference);
-    ++impl_->state().generation;
+    impl_->write([&] { impl_->flushQuads(difference); });
     return;
   }
   for (const QuadIds& quad : difference.removed) remove(quad);
@@ -275,9 +289,10 @@ void QuadWriter::clearGraph(TermId graph) {
 
 void QuadWriter::flush() {
   if (impl_->changes.empty() && impl_->terms.entries().empty()) return;
-  impl_->flushTerms();
-  impl_->flushQuads(impl_->takeChanges());
-  ++impl_->state().generation;
+  impl_->write([&] {
+    impl_->flushTerms();
+    impl_->flushQuads(impl_->takeChanges());
+  });
 }
 
 }  // namespace cluxel::rdf

@@ -242,6 +242,7 @@ void StoreSnapshot::keep(const std::string& name, std::shared_ptr<const void> ma
 
 const std::shared_ptr<StoreSnapshot>& sharedSnapshotOf(ReadTransaction::Impl& transaction) {
   if (transaction.snapshot && transaction.snapshot_generation == transaction.generation) return transaction.snapshot;
+  transaction.requireSound();
   const auto make = [&] { return std::make_shared<StoreSnapshot>(transaction); };
   transaction.snapshot =
       transaction.writing ? make() : transaction.environment->snapshot(mdb_txn_id(transaction.live()), make);

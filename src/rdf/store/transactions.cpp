@@ -266,6 +266,13 @@ MDB_txn* ReadTransaction::Impl::live() const {
   return txn;
 }
 
+void ReadTransaction::Impl::requireSound() const {
+  if (has_failed)
+    throw Error(ErrorKind::StoreUnavailable, environment->file().string() +
+                                                 ": a change of this transaction failed before, and nothing of it can "
+                                                 "be read or written; roll it back and repeat it");
+}
+
 CursorHandle ReadTransaction::Impl::cursorOn(Table which, std::string_view doing) const {
   MDB_cursor* raw = nullptr;
   check(mdb_cursor_open(live(), table(which), &raw), doing);
@@ -285,6 +292,7 @@ std::uint64_t ReadTransaction::commitNumber() const {
 }
 
 void WriteTransaction::writeIndexes() {
+  impl().requireSound();
   writeDrafts(impl());
   ++impl().generation;  // so that readers look for them in the file
 }
@@ -292,6 +300,7 @@ void WriteTransaction::writeIndexes() {
 void WriteTransaction::commit() {
   Impl& state = impl();
   state.live();
+  state.requireSound();
   const std::size_t id = mdb_txn_id(state.txn);
   writeDrafts(state);
   if (state.generation > 0) {

@@ -20,17 +20,6 @@ struct RangeRecord {
   std::uint64_t first_high = 0, first_low = 0, count = 0, hash = 0;
 };
 
-template <typename Keys, typename Number>
-void addTo(std::vector<RangeSums::Range>& ranges, const Keys& keys, Table index, const Number& number) {
-  withKeysOfSum(index, [&](const auto& key_in_sum) {
-    for (const auto& stored : keys) {
-      const Key128 key = number(stored);
-      if (ranges.back().sum.count == RangeSums::kUsualKeys) ranges.push_back({key, {}});
-      ranges.back().sum.add(key_in_sum(key));
-    }
-  });
-}
-
 }  // namespace
 
 std::size_t RangeSums::rangeOf(Key128 key) const {
@@ -128,12 +117,14 @@ RangeSums RangeSums::fromBytes(std::string_view bytes, const std::filesystem::pa
   return RangeSums(std::move(ranges));
 }
 
-void RangeSummer::add(std::span<const Key128> keys) {
-  addTo(ranges_, keys, index_, [](Key128 key) { return key; });
-}
-
 void RangeSummer::add(std::span<const QuadKey> keys) {
-  addTo(ranges_, keys, index_, [](const QuadKey& key) { return toNumber(key); });
+  withKeysOfSum(index_, [&](const auto& key_in_sum) {
+    for (const QuadKey& stored : keys) {
+      const Key128 key = toNumber(stored);
+      if (ranges_.back().sum.count == RangeSums::kUsualKeys) ranges_.push_back({key, {}});
+      ranges_.back().sum.add(key_in_sum(key));
+    }
+  });
 }
 
 /// An index that never had a key has no block.

@@ -59,7 +59,6 @@ class RangeSums {
 class RangeSummer {
  public:
   explicit RangeSummer(Table index) : index_(index) {}
-  void add(std::span<const Key128> keys);
   void add(std::span<const QuadKey> keys);
   RangeSums take() { return RangeSums(std::move(ranges_)); }
 

@@ -11,6 +11,7 @@
 #include <cstdlib>
 #include <new>
 #include <string>
+#include <system_error>
 
 #include "rdf/file/lmdb_handles.hpp"
 
@@ -23,7 +24,7 @@ namespace {
 constexpr std::size_t kChunkBytes = std::size_t{4} << 20U, kPagesOfChunk = kChunkBytes / DraftPages::kPageBytes;
 constexpr std::size_t kChunksInMemory = 4;
 
-/// Some file systems know no files without a name.
+/// A file of which the name is removed at once where the file system cannot make one without. -1 when none can be made.
 int openNameless(const fs::path& folder) {
   const int descriptor = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
   if (descriptor >= 0) return descriptor;
@@ -31,6 +32,10 @@ int openNameless(const fs::path& folder) {
   const int named = ::mkostemp(name.data(), O_CLOEXEC);
   if (named >= 0) ::unlink(name.c_str());
   return named;
+}
+
+void* anonymousMap() {
+  return ::mmap(nullptr, kChunkBytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
 }
 
 }  // namespace
@@ -49,22 +54,31 @@ std::uint8_t* DraftPages::take() {
 void DraftPages::addChunk() {
   chunks_.reserve(chunks_.size() + 1);
   free_.reserve(free_.size() + kPagesOfChunk);
-  void* const chunk = chunks_.size() < kChunksInMemory
-                          ? ::mmap(nullptr, kChunkBytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0)
-                          : mapOfFile();
+  if (chunks_.size() == kChunksInMemory) openFile();
+  void* const chunk = file_.get() < 0 ? anonymousMap() : mapOfFile();
   if (chunk == MAP_FAILED) throw std::bad_alloc();
   chunks_.push_back(chunk);
   for (std::size_t page = kPagesOfChunk; page-- > 0;)
     free_.push_back(static_cast<std::uint8_t*>(chunk) + page * kPageBytes);
 }
 
+std::size_t DraftPages::bytes() const {
+  return chunks_.size() * kChunkBytes;
+}
+
+/// The folder of a map may be closed to those who may write the map, and that of a temporary map is gone.
+void DraftPages::openFile() {
+  const LowDescriptors low;
+  std::error_code ignored;
+  file_ = Descriptor(openNameless(folder_));
+  if (file_.get() < 0) file_ = Descriptor(openNameless(fs::temp_directory_path(ignored)));
+}
+
 void* DraftPages::mapOfFile() {
-  const fs::path folder = folder_.empty() ? "." : folder_;
-  if (file_.get() < 0) file_ = Descriptor(openNameless(folder));
-  if (file_.get() < 0) failStore(folder, errno, "make a file for an index that changes");
   const auto at = static_cast<off_t>((chunks_.size() - kChunksInMemory) * kChunkBytes);
-  if (const int code = ::posix_fallocate(file_.get(), at, static_cast<off_t>(kChunkBytes)); code != 0)
-    failStore(folder, code, "reserve room for an index that changes");
+  int code = EINTR;
+  while (code == EINTR) code = ::posix_fallocate(file_.get(), at, static_cast<off_t>(kChunkBytes));
+  if (code != 0) failStore(folder_, code, "reserve room for an index that changes");
   return ::mmap(nullptr, kChunkBytes, PROT_READ | PROT_WRITE, MAP_SHARED, file_.get(), at);
 }
 

@@ -11,13 +11,13 @@
 
 namespace cluxel::rdf {
 
-/// Pages of 4 KiB. The first 16 MiB are anonymous memory. The others are a file without a name, which the kernel may
-/// write out when memory is short, and which goes with the process.
+/// Pages of 4 KiB. The first 16 MiB are anonymous memory. The others are a file without a name, which the kernel writes
+/// out as it does others, and which goes with the process.
 class DraftPages {
  public:
   static constexpr std::size_t kPageBytes = 4096;
 
-  /// A file, if one is needed, is made in `folder`.
+  /// A file, if one is needed, is made in `folder`; if it cannot be, for temporary files; else all is anonymous.
   explicit DraftPages(std::filesystem::path folder) : folder_(std::move(folder)) {}
   DraftPages(const DraftPages&) = delete;
   DraftPages& operator=(const DraftPages&) = delete;
@@ -26,13 +26,17 @@ class DraftPages {
   /// Its bytes are not set. Throws Error (StoreUnavailable) when the disk is full.
   std::uint8_t* take();
   void giveBack(std::uint8_t* page) { free_.push_back(page); }
+  /// Of all pages, taken or not.
+  std::size_t bytes() const;
 
  private:
   void addChunk();
+  void openFile();
   void* mapOfFile();
 
   std::filesystem::path folder_;
-  Descriptor file_;
+  Descriptor file_;  ///< none as long as it is not needed, or when none could be made
+  bool has_tried_file_ = false;
   std::vector<void*> chunks_;
   std::vector<std::uint8_t*> free_;  ///< the last one is taken next
 };

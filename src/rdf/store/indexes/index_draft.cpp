@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pages on which changes fall are written anew, each with as many keys as the others in its place; appended ones are
-// full.
+// A page on which changes fall is written anew, as one page or several with even numbers of keys. Keys beyond the last
+// one are appended, which fills pages.
 #include "rdf/store/indexes/index_draft.hpp"
 
 #include <algorithm>
@@ -26,13 +26,12 @@ class PageMerge {
   PageMerge(std::span<const Key128> added, std::span<const Key128> removed, const IndexDraft::Listener& listener)
       : added_(added), removed_(removed), listener_(listener) {}
 
-  bool isAtEnd() const { return added_.empty() && removed_.empty(); }
   bool hasBefore(Key128 key) const {
     return (!added_.empty() && added_.front() < key) || (!removed_.empty() && removed_.front() < key);
   }
 
-  /// The keys of a page after the changes before `beyond`, or after all that are left where there is none.
-  std::span<const Key128> merge(std::span<const QuadKey> page, const Key128* beyond) {
+  /// The keys of a page after the changes before `beyond`.
+  std::span<const Key128> merge(std::span<const QuadKey> page, Key128 beyond) {
     merged_.clear();
     for (const QuadKey& entry : page) {
       const Key128 key = toNumber(entry);
@@ -43,11 +42,14 @@ class PageMerge {
       else
         merged_.push_back(key);
     }
-    while (!added_.empty() && (beyond == nullptr || added_.front() < *beyond)) add();
-    while (!removed_.empty() && (beyond == nullptr || removed_.front() < *beyond)) removed_ = removed_.subspan(1);
-    listener_.has_written(page.size() + merged_.size());
+    while (!added_.empty() && added_.front() < beyond) add();
+    while (!removed_.empty() && removed_.front() < beyond) removed_ = removed_.subspan(1);
+    listener_.has_merged(page.size() + merged_.size());
     return merged_;
   }
+
+  /// The keys to be added that are left.
+  std::span<const Key128> rest() const { return added_; }
 
  private:
   void add() {
@@ -71,9 +73,8 @@ std::span<const QuadKey> IndexDraft::page(std::size_t number) const {
   return {keysOf(pages_[number]), lmdb_page::entryCount(pages_[number])};
 }
 
-/// Beyond the last page.
+/// After the pages that are there.
 void IndexDraft::addPage(std::span<const Key128> keys) {
-  pages_.reserve(pages_.size() + 1);
   std::uint8_t* const page = memory_.take();
   std::transform(keys.begin(), keys.end(), keysOf(page), toKey);
   setCount(page, keys.size());
@@ -95,26 +96,31 @@ void IndexDraft::change(std::span<const Key128> added, std::span<const Key128> r
   const std::vector<Key128> first = std::exchange(first_, {});
   pages_.reserve(before.size()), first_.reserve(before.size());
   PageMerge changes(added, removed, listener);
-  const auto add = [&](std::span<const Key128> keys) {
-    const std::size_t pages = (keys.size() + kMaxKeys - 1) / kMaxKeys;
-    for (std::size_t i = 0; i < pages; ++i) {
-      const std::size_t from = keys.size() * i / pages, to = keys.size() * (i + 1) / pages;
-      addPage(keys.subspan(from, to - from));
-    }
-  };
-  if (before.empty()) add(changes.merge({}, nullptr));
   for (std::size_t i = 0; i < before.size(); ++i) {
-    const Key128* beyond = i + 1 < before.size() ? &first[i + 1] : nullptr;
-    const std::size_t count = lmdb_page::entryCount(before[i]);
-    if (beyond != nullptr ? !changes.hasBefore(*beyond) : changes.isAtEnd()) {
+    const std::span<const QuadKey> keys{keysOf(before[i]), lmdb_page::entryCount(before[i])};
+    const Key128 beyond = i + 1 < before.size() ? first[i + 1] : toNumber(keys.back()) + 1;
+    if (!changes.hasBefore(beyond)) {
       pages_.push_back(before[i]);
       first_.push_back(first[i]);
       continue;
     }
-    const std::span<const Key128> merged = changes.merge({keysOf(before[i]), count}, beyond);
-    size_ -= count;
+    size_ -= keys.size();
+    const std::span<const Key128> merged = changes.merge(keys, beyond);
     memory_.giveBack(before[i]);
-    add(merged);
+    const std::size_t pages = (merged.size() + kMaxKeys - 1) / kMaxKeys;
+    for (std::size_t part = 0; part < pages; ++part) {
+      const std::size_t from = merged.size() * part / pages, to = merged.size() * (part + 1) / pages;
+      addPage(merged.subspan(from, to - from));
+    }
+  }
+  constexpr std::size_t kTogether = 4096;
+  for (auto rest = changes.rest(); !rest.empty(); rest = rest.subspan(std::min(kTogether, rest.size()))) {
+    const auto some = rest.first(std::min(kTogether, rest.size()));
+    for (const Key128 key : some) {
+      append(key);
+      listener.added(key);
+    }
+    listener.has_merged(some.size());
   }
 }
 

@@ -17,7 +17,7 @@ namespace cluxel::rdf {
 /// Sorted keys in pages that are laid out as LMDB's, so that page directories read them as they read the file.
 class IndexDraft {
  public:
-  /// Where its pages lie, and in which `folder`: see DraftPages.
+  /// A large draft makes a file in `folder` (DraftPages).
   explicit IndexDraft(std::filesystem::path folder) : memory_(std::move(folder)) {}
   IndexDraft(const IndexDraft&) = delete;
   IndexDraft& operator=(const IndexDraft&) = delete;
@@ -28,18 +28,20 @@ class IndexDraft {
 
   /// What change() tells.
   struct Listener {
-    std::function<void(Key128)> added, removed;    ///< keys that really are
-    std::function<void(std::size_t)> has_written;  ///< some keys
+    std::function<void(Key128)> added, removed;   ///< keys that really are
+    std::function<void(std::size_t)> has_merged;  ///< so many keys since the last call
   };
   /// Both lists are ascending, without duplicates, and disjoint. Keys that are there are not added, those that are not
   /// are not removed. Cost: linear in the changes and the keys of the pages that they fall on; one step for each other
-  /// page.
+  /// page. After an error the draft is of no use.
   void change(std::span<const Key128> added, std::span<const Key128> removed, const Listener& listener);
 
   /// Valid until the next change.
   PageDirectory directory() const;
   std::size_t pageCount() const { return pages_.size(); }
   std::span<const QuadKey> page(std::size_t number) const;
+  /// Of all pages, also those that are kept for later changes.
+  std::size_t bytes() const { return memory_.bytes(); }
 
  private:
   static constexpr std::size_t kMaxKeys = (DraftPages::kPageBytes - lmdb_page::kHeaderSize) / sizeof(QuadKey);
