@@ -69,9 +69,11 @@ std::size_t DraftPages::bytes() const {
 /// The folder of a map may be closed to those who may write the map, and that of a temporary map is gone.
 void DraftPages::openFile() {
   const LowDescriptors low;
-  std::error_code ignored;
   file_ = Descriptor(openNameless(folder_));
-  if (file_.get() < 0) file_ = Descriptor(openNameless(fs::temp_directory_path(ignored)));
+  if (file_.get() >= 0) return;
+  std::error_code ignored;
+  folder_ = fs::temp_directory_path(ignored);
+  file_ = Descriptor(openNameless(folder_));
 }
 
 void* DraftPages::mapOfFile() {
