@@ -36,7 +36,6 @@ class DraftPages {
 
   std::filesystem::path folder_;
   Descriptor file_;  ///< none as long as it is not needed, or when none could be made
-  bool has_tried_file_ = false;
   std::vector<void*> chunks_;
   std::vector<std::uint8_t*> free_;  ///< the last one is taken next
 };
