@@ -123,7 +123,7 @@ class GrowthUpdate {
     changes.former_summaries.emplace(tile, std::string(requiredBlock(before_, tables::kSummaries, tile)));
   }
 
-  /// Of objects that no strip has made again.
+  /// Tells what rays of the new scans say about objects that no strip has made again.
   void tellPassedObjects() {
     work_.stages.readAsBefore(nullptr, {});
     const std::vector<Cloud> clouds = storedClouds(transaction_);

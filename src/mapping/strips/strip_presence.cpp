@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Objects were told without facts from rays; these are added.
+// Strips write objects without facts from rays. These facts are added here.
 #include "mapping/strips/strip_presence.hpp"
 
 #include "mapping/clouds/scan_store.hpp"

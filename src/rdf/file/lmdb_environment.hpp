@@ -153,6 +153,7 @@ struct ReadTransaction::Impl {
   std::function<void()> flush_poll;  ///< of a FlushPoll
   std::unique_ptr<IndexDirectories> directories;
   std::unique_ptr<ChangedRanges> ranges;  ///< of a write transaction
+  bool has_failed = false;                ///< a change failed: some indexes may have it, and others not
   unsigned threads = 1;                   ///< for sorting and merging the changes of indexes
   /// Of a write transaction: indexes of which most is new, written by commit(). Their tables hold what was there
   /// before.
@@ -163,8 +164,7 @@ struct ReadTransaction::Impl {
   Impl& operator=(const Impl&) = delete;
   ~Impl();
   MDB_dbi table(Table which) const { return environment->table(which); }
-  bool has_failed = false;  ///< some indexes have a change that others lack
-  /// Throws Error (StoreUnavailable) when a change of the transaction failed: it can only be given up.
+  /// Throws Error (StoreUnavailable) when a change of the transaction failed: it can only be rolled back.
   void requireSound() const;
   IndexDraft* draftOf(Table index) const { return drafts[static_cast<std::size_t>(index)].get(); }
   void check(int code, std::string_view doing) const { environment->check(code, doing); }

@@ -24,7 +24,8 @@ namespace {
 constexpr std::size_t kChunkBytes = std::size_t{4} << 20U, kPagesOfChunk = kChunkBytes / DraftPages::kPageBytes;
 constexpr std::size_t kChunksInMemory = 4;
 
-/// A file of which the name is removed at once where the file system cannot make one without. -1 when none can be made.
+/// A file without a name. Where the file system has no such files, the name is removed at once. -1 when no file can be
+/// made.
 int openNameless(const fs::path& folder) {
   const int descriptor = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
   if (descriptor >= 0) return descriptor;

@@ -11,13 +11,14 @@
 
 namespace cluxel::rdf {
 
-/// Pages of 4 KiB. The first 16 MiB are anonymous memory. The others are a file without a name, which the kernel writes
-/// out as it does others, and which goes with the process.
+/// Pages of 4 KiB. The first 16 MiB are anonymous memory. The others lie in a file without a name: the kernel writes it
+/// out like any other file, and it is gone when the process ends.
 class DraftPages {
  public:
   static constexpr std::size_t kPageBytes = 4096;
 
-  /// A file, if one is needed, is made in `folder`; if it cannot be, for temporary files; else all is anonymous.
+  /// The file is made in `folder` when it is needed, or in the folder for temporary files when `folder` cannot be
+  /// written. Where neither works, all pages are anonymous memory.
   explicit DraftPages(std::filesystem::path folder) : folder_(std::move(folder)) {}
   DraftPages(const DraftPages&) = delete;
   DraftPages& operator=(const DraftPages&) = delete;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A page on which changes fall is written anew, as one page or several with even numbers of keys. Keys beyond the last
-// one are appended, which fills pages.
+// A page on which changes fall is written anew, as one page or as several with equal numbers of keys. Keys beyond the
+// last one are appended, which fills pages.
 #include "rdf/store/indexes/index_draft.hpp"
 
 #include <algorithm>

@@ -28,7 +28,7 @@ class IndexDraft {
 
   /// What change() tells.
   struct Listener {
-    std::function<void(Key128)> added, removed;   ///< keys that really are
+    std::function<void(Key128)> added, removed;   ///< keys that were not there, and keys that were
     std::function<void(std::size_t)> has_merged;  ///< so many keys since the last call
   };
   /// Both lists are ascending, without duplicates, and disjoint. Keys that are there are not added, those that are not
