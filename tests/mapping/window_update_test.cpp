@@ -143,10 +143,14 @@ TEST(WindowUpdate, TellsWhatRaysPassBeyondTheStrips) {
     text.close();
     return scansOf({folder.path() / "scans.yaml"});
   };
-  const fs::path map = folder.path() / "map.clx", fresh = folder.path() / "fresh.clx";
+  const fs::path map = folder.path() / "map.clx", at_once = folder.path() / "at_once.clx",
+                 fresh = folder.path() / "fresh.clx";
   buildMap(scans(0, 3), shippedInputs(), map, {}, silence());
+  fs::copy_file(map, at_once);
   const ChangeReport report = extendMap(map, scans(3, 6), {.whole_cluxels = 60}, silence());
-  EXPECT_EQ(report.local_commits, 1U) << "was not decided in strips";
+  EXPECT_EQ(report.local_commits, 1U) << "was decided as a whole";
+  EXPECT_GT(report.tiles_decided, extendMap(at_once, scans(3, 6), {.max_window_share = 2}, silence()).tiles_decided)
+      << "was not decided in strips";
   buildMap(scans(0, 6), shippedInputs(), fresh, {}, silence());
   EXPECT_TRUE(canonicalText(map) == canonicalText(fresh));
   EXPECT_THAT(differingTables(map, fresh), testing::IsEmpty());
