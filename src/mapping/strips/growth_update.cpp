@@ -17,9 +17,9 @@
 #include "mapping/map_tables.hpp"
 #include "mapping/statements/statement_facts.hpp"
 #include "mapping/strips/map_strips.hpp"
-#include "mapping/strips/strip_presence.hpp"
 #include "mapping/strips/whole_update.hpp"
 #include "mapping/window/passed_objects.hpp"
+#include "mapping/window/window_presence.hpp"
 #include "perception/segments/summary_tile.hpp"
 
 namespace cluxel::mapping {
@@ -71,8 +71,7 @@ class GrowthUpdate {
       returnFreeMemory();
     }
     if (!std::all_of(wide.begin(), wide.end(), [&](const ContentHash& id) { return isThere(id); })) return decideRest();
-    tellPassedObjects();
-    tellPresence(work_, made_);
+    tellRays();
     inferFacts(transaction_, work_.parsed.inputs, work_.sink, work_.check);
     const rdf::ReadTransaction& reading = transaction_;
     update.statements = toldOutcomes(rdf::QuadReader(reading));
@@ -123,13 +122,15 @@ class GrowthUpdate {
     changes.former_summaries.emplace(tile, std::string(requiredBlock(before_, tables::kSummaries, tile)));
   }
 
-  /// Tells what rays of the new scans say about objects that no strip has made again.
-  void tellPassedObjects() {
+  /// Tells what rays say about objects that strips have made, and about others that rays of the new scans pass.
+  void tellRays() {
+    if (work_.check) work_.check(0);
     work_.stages.readAsBefore(nullptr, {});
     const std::vector<Cloud> clouds = storedClouds(transaction_);
     std::set<ContentHash> passed = passedObjects(transaction_, changedRays(former_.clouds, seenClouds(clouds)));
     std::erase_if(passed, [&](const ContentHash& object) { return made_.contains(object); });
-    updatePassedObjects(transaction_, work_.parsed, work_.stages, clouds, std::move(passed), nullptr, params_.threads);
+    made_.add(targetsOf(transaction_, work_.parsed, work_.stages, passed));
+    tellPresence(transaction_, made_.take(), clouds, made_.removed(), params_.threads);
   }
 
   /// A strip cannot be decided alone: the whole map is.

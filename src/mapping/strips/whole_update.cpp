@@ -14,9 +14,9 @@
 #include "mapping/splits_store.hpp"
 #include "mapping/statements/statement_facts.hpp"
 #include "mapping/strips/map_strips.hpp"
-#include "mapping/strips/strip_presence.hpp"
 #include "mapping/window/former_objects.hpp"
 #include "mapping/window/map_window.hpp"
+#include "mapping/window/window_presence.hpp"
 #include "perception/segments/summary_tile.hpp"
 #include "rdf/vocabulary.hpp"
 #include "rules/decide/local_reach.hpp"
@@ -86,7 +86,8 @@ class StripUpdate {
       return record && !record->tiles.empty();
     };
     if (!std::all_of(strip.wide.begin(), strip.wide.end(), is_there)) return std::nullopt;  // else its facts stay
-    tellPresence(work_, made);
+    if (work_.check) work_.check(0);
+    tellPresence(transaction_, made.take(), storedClouds(transaction_), made.removed(), params_.threads);
     eraseRowsWithoutObject(transaction_);
     inferFacts(transaction_, work_.parsed.inputs, work_.sink, work_.check);
     storeSplits(transaction_, splits);

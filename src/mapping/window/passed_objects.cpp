@@ -3,21 +3,16 @@
 #include "mapping/window/passed_objects.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <utility>
 
 #include "mapping/clouds/scan_store.hpp"
 #include "mapping/damaged_map.hpp"
-#include "mapping/facts/fact_patch.hpp"
-#include "mapping/facts/fact_sink.hpp"
-#include "mapping/facts/fact_units.hpp"
-#include "mapping/facts/object_facts.hpp"
 #include "mapping/layers/stored_layers.hpp"
-#include "mapping/presence/object_presence.hpp"
 #include "mapping/window/kept_objects.hpp"
 #include "mapping/window/map_window.hpp"
-#include "rdf/map_iris.hpp"
-#include "rdf/vocabulary.hpp"
+#include "mapping/window/window_presence.hpp"
 
 namespace cluxel::mapping {
 
@@ -58,21 +53,13 @@ void addCluxels(const rdf::ReadTransaction& transaction, const TileStages& stage
     for (auto& [name, cluxels] : of_object) together.objects.at(id).parts.push_back({name, {}, std::move(cluxels)});
 }
 
-class PassedUpdate {
+/// Reads the tiles of objects, some at a time.
+class TargetSearch {
  public:
-  PassedUpdate(rdf::WriteTransaction& transaction, const ParsedInputs& parsed, TileStages& stages,
-               const std::vector<Cloud>& clouds, unsigned threads)
-      : transaction_(transaction),
-        parsed_(parsed),
-        stages_(stages),
-        clouds_(clouds),
-        threads_(threads),
-        all_(storedTiles(transaction)),
-        facts_(transaction, rdf::vocabulary::kGraphObserved, FactsOf::Collected),
-        stored_(static_cast<const rdf::ReadTransaction&>(transaction)),
-        patch_(stored_, facts_.iri(rdf::vocabulary::kGraphObserved)) {}
+  TargetSearch(const rdf::ReadTransaction& transaction, const ParsedInputs& parsed, TileStages& stages)
+      : transaction_(transaction), parsed_(parsed), stages_(stages), all_(storedTiles(transaction)) {}
 
-  void run(const std::set<ContentHash>& objects) {
+  std::vector<RayTarget> run(const std::set<ContentHash>& objects) {
     std::map<TileKey, std::vector<ContentHash>> by_place;
     for (const ContentHash& id : objects)
       if (const auto record = storedRecord(transaction_, id); record && !record->tiles.empty())
@@ -80,12 +67,10 @@ class PassedUpdate {
     Together together;
     for (const auto& [tile, ids] : by_place) {
       for (const ContentHash& id : ids) add(id, together);
-      if (together.tiles.size() >= kTilesAtOnce) tell(std::exchange(together, {}));
+      if (together.tiles.size() >= kTilesAtOnce) collect(std::exchange(together, {}));
     }
-    if (!together.objects.empty()) tell(std::move(together));
-    patch_.write(facts_.take(), facts_.writer());
-    facts_.writer().flush();
-    forgetFactUnits(transaction_);
+    if (!together.objects.empty()) collect(std::move(together));
+    return std::move(targets_);
   }
 
  private:
@@ -99,7 +84,7 @@ class PassedUpdate {
     together.tiles.insert(record.tiles.begin(), record.tiles.end());
   }
 
-  void tell(Together together) {
+  void collect(Together together) {
     const TileSet around = without(perception::withRing(together.tiles, all_), together.tiles);
     stages_.hold(transaction_, together.tiles, around);
     perception::Scene scene;
@@ -108,21 +93,15 @@ class PassedUpdate {
     std::vector<rules::SemanticObject> asked;
     for (auto& [id, object] : together.objects)
       if (!object.parts.empty()) asked.push_back(std::move(object));
-    const ObjectPresence presence =
-        updatePresence(transaction_, rayTargets(scene, asked, parsed_.rules), Covered::Some, clouds_, {}, threads_);
-    for (std::size_t i = 0; i < asked.size(); ++i)
-      replaceRayFacts(facts_.iri(rdf::iriOfObject(asked[i].id)), presence.times[i], presence.rays[i], patch_, facts_);
+    std::vector<RayTarget> found = rayTargets(scene, asked, parsed_.rules);
+    targets_.insert(targets_.end(), std::make_move_iterator(found.begin()), std::make_move_iterator(found.end()));
   }
 
-  rdf::WriteTransaction& transaction_;
+  const rdf::ReadTransaction& transaction_;
   const ParsedInputs& parsed_;
   TileStages& stages_;
-  const std::vector<Cloud>& clouds_;
-  unsigned threads_;
   TileSet all_;
-  FactSink facts_;
-  rdf::QuadReader stored_;
-  FactPatch patch_;
+  std::vector<RayTarget> targets_;
 };
 
 }  // namespace
@@ -149,15 +128,18 @@ TileSet tilesOfPassedObjects(const rdf::ReadTransaction& transaction, const std:
   return tiles;
 }
 
+std::vector<RayTarget> targetsOf(const rdf::ReadTransaction& transaction, const ParsedInputs& parsed,
+                                 TileStages& stages, const std::set<ContentHash>& objects) {
+  return TargetSearch(transaction, parsed, stages).run(objects);
+}
+
 void updatePassedObjects(rdf::WriteTransaction& transaction, const ParsedInputs& parsed, TileStages& stages,
-                         const std::vector<Cloud>& clouds, std::set<ContentHash> objects, const MapWindow* window,
-                         unsigned threads) {
-  if (window != nullptr)
-    std::erase_if(objects, [&](const ContentHash& id) {
-      const auto record = storedRecord(transaction, id);
-      return record && isInside(*record, *window);
-    });
-  if (!objects.empty()) PassedUpdate(transaction, parsed, stages, clouds, threads).run(objects);
+                         const std::vector<Cloud>& clouds, const std::set<ContentHash>& objects,
+                         const MapWindow& window, unsigned threads) {
+  std::set<ContentHash> beyond;
+  for (const ContentHash& id : objects)
+    if (const auto record = storedRecord(transaction, id); record && !isInside(*record, window)) beyond.insert(id);
+  if (!beyond.empty()) tellPresence(transaction, targetsOf(transaction, parsed, stages, beyond), clouds, {}, threads);
 }
 
 }  // namespace cluxel::mapping

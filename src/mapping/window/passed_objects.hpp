@@ -9,6 +9,7 @@
 #include "mapping/build/tile_stages.hpp"
 #include "mapping/clouds/cloud.hpp"
 #include "mapping/facts/semantic_layer.hpp"
+#include "mapping/presence/ray_targets.hpp"
 #include "mapping/window/map_window.hpp"
 
 namespace cluxel::mapping {
@@ -21,11 +22,15 @@ std::set<ContentHash> passedObjects(const rdf::ReadTransaction& transaction,
 perception::TileSet tilesOfPassedObjects(const rdf::ReadTransaction& transaction,
                                          const std::vector<Eigen::AlignedBox3d>& rays);
 
-/// Computes and tells when those of `objects` were there that the window, if there is one, does not hold as a whole,
-/// and how many rays passed them, from the rays of all clouds of the map. The stored layers of their tiles must be
-/// those of the stored outputs. Reads about two hundred tiles at a time.
+/// What rays are compared with, of objects that have records. The stored layers of their tiles must be those of the
+/// stored outputs. Reads about two hundred tiles at a time.
+std::vector<RayTarget> targetsOf(const rdf::ReadTransaction& transaction, const ParsedInputs& parsed,
+                                 TileStages& stages, const std::set<ContentHash>& objects);
+
+/// Computes and tells when those of `objects` were there that the window does not hold as a whole, and how many rays
+/// passed them (tellPresence(), targetsOf()).
 void updatePassedObjects(rdf::WriteTransaction& transaction, const ParsedInputs& parsed, TileStages& stages,
-                         const std::vector<Cloud>& clouds, std::set<ContentHash> objects, const MapWindow* window,
-                         unsigned threads);
+                         const std::vector<Cloud>& clouds, const std::set<ContentHash>& objects,
+                         const MapWindow& window, unsigned threads);
 
 }  // namespace cluxel::mapping

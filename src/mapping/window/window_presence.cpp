@@ -5,10 +5,29 @@
 #include <set>
 #include <utility>
 
+#include "mapping/facts/fact_patch.hpp"
+#include "mapping/facts/fact_units.hpp"
+#include "mapping/facts/object_facts.hpp"
 #include "mapping/presence/object_presence.hpp"
 #include "mapping/window/kept_objects.hpp"
+#include "rdf/map_iris.hpp"
+#include "rdf/vocabulary.hpp"
 
 namespace cluxel::mapping {
+
+void tellPresence(rdf::WriteTransaction& transaction, std::span<const RayTarget> targets,
+                  const std::vector<Cloud>& clouds, const std::set<ContentHash>& gone, unsigned threads) {
+  const ObjectPresence presence = updatePresence(transaction, targets, Covered::Some, clouds, gone, threads);
+  FactSink facts(transaction, rdf::vocabulary::kGraphObserved, FactsOf::Collected);
+  const rdf::ReadTransaction& reading = transaction;
+  const rdf::QuadReader stored(reading);
+  FactPatch patch(stored, facts.iri(rdf::vocabulary::kGraphObserved));
+  for (std::size_t i = 0; i < targets.size(); ++i)
+    replaceRayFacts(facts.iri(rdf::iriOfObject(targets[i].object)), presence.times[i], presence.rays[i], patch, facts);
+  patch.write(facts.take(), facts.writer());
+  facts.writer().flush();
+  forgetFactUnits(transaction);
+}
 
 WindowPresence updatePresenceIn(rdf::WriteTransaction& transaction, const WindowFacts& facts,
                                 const std::vector<rules::SemanticObject>& made) {

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <optional>
+#include <set>
+#include <span>
 #include <vector>
 
 #include "mapping/window/window_facts.hpp"
@@ -22,6 +24,11 @@ struct WindowPresence {
   std::vector<std::optional<perception::RayCounts>> rays;
   std::vector<KeptPresence> kept;  ///< of objects that the window holds as a whole
 };
+
+/// Computes, stores and tells what follows from the rays of all clouds for `targets`: objects that are written already.
+/// Rows of `gone` go, unless they are targets. Each scan is read once.
+void tellPresence(rdf::WriteTransaction& transaction, std::span<const RayTarget> targets,
+                  const std::vector<Cloud>& clouds, const std::set<ContentHash>& gone, unsigned threads);
 
 /// Computes and stores what follows from the rays of the map's clouds; nothing where that is to be done later.
 WindowPresence updatePresenceIn(rdf::WriteTransaction& transaction, const WindowFacts& facts,
