@@ -15,6 +15,7 @@
 #include "mapping/change/map_merge.hpp"
 #include "mapping/change/map_update.hpp"
 #include "mapping/change/statement_change.hpp"
+#include "mapping/far_rays.hpp"
 #include "mapping/layers/semantic_state.hpp"
 #include "mapping/map_tables.hpp"
 #include "mapping/small_campus.hpp"
@@ -254,6 +255,20 @@ TEST(MergeOfStreets, OfAnyPartsIsTheBuildFromAllScans) {
     taken += mergeAndCompare(street, merge, random);
   }
   EXPECT_GT(taken, 0U);
+}
+
+TEST(MergeOfStreets, TellsWhatRaysOfTheOtherMapPass) {
+  const FarRays rays;
+  const fs::path west = rays.file("west.clx"), east = rays.file("east.clx"), merged = rays.file("merged.clx"),
+                 whole = rays.file("whole.clx");
+  buildMap(rays.scans(0, 3), shippedInputs(), west, {}, silence());
+  buildMap(rays.scans(3, 6), shippedInputs(), east, {}, silence());
+  buildMap(rays.scans(0, 6), shippedInputs(), whole, {}, silence());
+  const ChangeReport report = mergeMaps({{west}, {east}}, merged, {}, silence());
+  EXPECT_EQ(report.maps_taken_over, 1U);
+  EXPECT_LT(2 * report.tiles_decided, report.tiles) << "objects that rays pass lie in the window";
+  EXPECT_TRUE(canonicalText(merged) == canonicalText(whole));
+  EXPECT_TRUE(blocksOf(merged) == blocksOf(whole));
 }
 
 /// A wall on level ground, far from the street.

@@ -9,6 +9,7 @@
 
 #include "mapping/change/map_update.hpp"
 #include "mapping/change/statement_change.hpp"
+#include "mapping/far_rays.hpp"
 #include "mapping/street_changes.hpp"
 #include "rdf/map_iris.hpp"
 #include "sparql/query_engine.hpp"
@@ -112,46 +113,17 @@ TEST(WindowUpdate, TellsTheSameObjectsInStrips) {
   }
 }
 
-/// Moves a scan, and lets a ray of it end at a place [m, map]: all that lies between may have been passed.
-Scan movedWithRay(Scan scan, const Eigen::Vector3d& by, const Eigen::Vector3d& end_map) {
-  scan.T_map_sensor.pretranslate(by);
-  const Eigen::Vector3d end = scan.T_map_sensor.inverse() * end_map;
-  ScanPoints& points = scan.points;
-  points.x.push_back(static_cast<float>(end.x()));
-  points.y.push_back(static_cast<float>(end.y()));
-  points.z.push_back(static_cast<float>(end.z()));
-  if (!points.intensity.empty()) points.intensity.push_back(0.5F);
-  if (!points.label.empty()) points.label.push_back(0);
-  return scan;
-}
-
 TEST(WindowUpdate, TellsWhatRaysPassBeyondTheStrips) {
-  const SmallCampus campus({.seed = 1, .stops = 6, .size_m = 80, .points_per_stop = 5000, .max_range_m = 16});
-  const ScratchFolder folder;
-  const Eigen::Vector3d first = campus.scans()[0].scan.T_map_sensor.translation();
-  std::vector<fs::path> files = campus.files();
-  for (std::size_t i = 3; i < files.size(); ++i) {
-    files[i] = folder.path() / ("far" + std::to_string(i) + ".pcd");
-    writeScanFile(movedWithRay(campus.scans()[i].scan, {150, 0, 0}, first + Eigen::Vector3d(-120, 20.0 * i - 80, 2)),
-                  files[i]);
-  }
-  const auto scans = [&](std::size_t from, std::size_t to) {
-    std::ofstream text(folder.path() / "scans.yaml");
-    text << "scans:\n";
-    for (std::size_t i = from; i < to; ++i)
-      text << "  - {path: " << files[i].string() << ", time_s: " << 1600000000 + 1000 * i << "}\n";
-    text.close();
-    return scansOf({folder.path() / "scans.yaml"});
-  };
-  const fs::path map = folder.path() / "map.clx", at_once = folder.path() / "at_once.clx",
-                 fresh = folder.path() / "fresh.clx";
-  buildMap(scans(0, 3), shippedInputs(), map, {}, silence());
+  const FarRays rays;
+  const fs::path map = rays.file("map.clx"), at_once = rays.file("at_once.clx"), fresh = rays.file("fresh.clx");
+  buildMap(rays.scans(0, 3), shippedInputs(), map, {}, silence());
   fs::copy_file(map, at_once);
-  const ChangeReport report = extendMap(map, scans(3, 6), {.whole_cluxels = 60}, silence());
+  const ChangeReport report = extendMap(map, rays.scans(3, 6), {.whole_cluxels = 60}, silence());
   EXPECT_EQ(report.local_commits, 1U) << "was decided as a whole";
-  EXPECT_GT(report.tiles_decided, extendMap(at_once, scans(3, 6), {.max_window_share = 2}, silence()).tiles_decided)
+  EXPECT_GT(report.tiles_decided,
+            extendMap(at_once, rays.scans(3, 6), {.max_window_share = 2}, silence()).tiles_decided)
       << "was not decided in strips";
-  buildMap(scans(0, 6), shippedInputs(), fresh, {}, silence());
+  buildMap(rays.scans(0, 6), shippedInputs(), fresh, {}, silence());
   EXPECT_TRUE(canonicalText(map) == canonicalText(fresh));
   EXPECT_THAT(differingTables(map, fresh), testing::IsEmpty());
 }

@@ -108,8 +108,8 @@ LentDecisions::LentDecisions(rdf::WriteTransaction& transaction, const rdf::Read
   own_state_ = storedSemanticState(transaction).value();
   state_of_lender_ = storedSemanticState(lender).value();
   const std::vector<SeenCloud>&of_own = own_state_.clouds, &of_other = state_of_lender_.clouds;
-  passed_ = perception::unionOf(tilesOfPassedObjects(transaction, raysOfOthers(of_other, of_own)),
-                                tilesOfPassedObjects(lender, raysOfOthers(of_own, of_other)));
+  passed_ = passedObjects(transaction, raysOfOthers(of_other, of_own));
+  passed_.merge(passedObjects(lender, raysOfOthers(of_own, of_other)));
   state_.cluxels = own_state_.cluxels + state_of_lender_.cluxels;
   state_.primitives = own_state_.primitives + state_of_lender_.primitives;
   state_.objects = own_state_.objects;
@@ -164,7 +164,7 @@ void LentDecisions::lendRecord(const ContentHash& id, const ObjectRecord& record
   ObjectRecord now = record;
   if (record.is_class_wide) {
     std::erase_if(now.tiles, [&](const TileKey& tile) { return !is_lent(tile); });
-    passed_.insert(now.tiles.front());
+    tiles_of_wide_.insert(now.tiles.front());
     if (const auto own = storedRecord(transaction_, id)) {
       widened_.emplace(id, toBytes(*own));
       now.tiles.insert(now.tiles.end(), own->tiles.begin(), own->tiles.end());

@@ -45,9 +45,10 @@ class LentDecisions {
   std::vector<SemanticState> statesOfMaps() const { return {own_state_, state_of_lender_}; }
   /// Tiles of both maps, and those of the lender beside tiles of the map: everything in them counts as new.
   const TileSet& seam() const { return seam_; }
-  /// Tiles of objects of each map that rays of the other's clouds may pass, and one of each object of a whole class,
-  /// which is told anew.
-  const TileSet& passed() const { return passed_; }
+  /// A lent tile of each object of a whole class, which is told anew.
+  const TileSet& tilesOfWide() const { return tiles_of_wide_; }
+  /// Objects of each map that rays of the other's clouds may pass.
+  const std::set<ContentHash>& passed() const { return passed_; }
   /// Whether a decision covers all objects that reach from lent tiles into common ones, and the wide ones.
   bool isCoveredBy(const WindowDecision& decision, const std::vector<rules::SemanticObject>& wide) const;
 
@@ -61,7 +62,8 @@ class LentDecisions {
 
   rdf::WriteTransaction& transaction_;
   const rdf::ReadTransaction& lender_;
-  TileSet own_, lent_, common_, seam_, passed_;
+  TileSet own_, lent_, common_, seam_, tiles_of_wide_;
+  std::set<ContentHash> passed_;
   SemanticState own_state_, state_of_lender_, state_;
   NotLent not_lent_;
   std::set<ContentHash> reaching_;              ///< objects of the lender in lent and common tiles

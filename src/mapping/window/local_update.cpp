@@ -90,10 +90,12 @@ class LocalUpdate {
       changes_.tiles.insert(other->tiles.begin(), other->tiles.end());
       if (changes_.tiles.empty()) return unchanged();
     }
-    if (lent_ != nullptr)
-      more_ = lent_->passed();
-    else if (strip_ == nullptr)
+    if (lent_ != nullptr) {
+      more_ = lent_->tilesOfWide();
+      passed_ = lent_->passed();
+    } else if (strip_ == nullptr) {
       passed_ = passedObjects(transaction_, changedRays(before_.clouds, now_.clouds));
+    }
     const std::vector<SemanticState> maps = lent_ != nullptr ? lent_->statesOfMaps() : std::vector{before_};
     WindowStatements statements(transaction_, parsed_, stages_, clouds_, changes_, map_, maps, now_);
     for (; attempt_ < kMaxAttempts && !statements.needsWholeMap(); ++attempt_) {

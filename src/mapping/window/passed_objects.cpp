@@ -121,13 +121,6 @@ std::set<ContentHash> passedObjects(const rdf::ReadTransaction& transaction,
   return objects;
 }
 
-TileSet tilesOfPassedObjects(const rdf::ReadTransaction& transaction, const std::vector<Eigen::AlignedBox3d>& rays) {
-  TileSet tiles;
-  for (const ContentHash& object : passedObjects(transaction, rays))
-    if (const auto record = storedRecord(transaction, object)) tiles.insert(record->tiles.begin(), record->tiles.end());
-  return tiles;
-}
-
 std::vector<RayTarget> targetsOf(const rdf::ReadTransaction& transaction, const ParsedInputs& parsed,
                                  TileStages& stages, const std::set<ContentHash>& objects) {
   return TargetSearch(transaction, parsed, stages).run(objects);

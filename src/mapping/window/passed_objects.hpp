@@ -18,9 +18,6 @@ namespace cluxel::mapping {
 /// when the clouds of the rays come or go.
 std::set<ContentHash> passedObjects(const rdf::ReadTransaction& transaction,
                                     const std::vector<Eigen::AlignedBox3d>& rays);
-/// The tiles of these objects.
-perception::TileSet tilesOfPassedObjects(const rdf::ReadTransaction& transaction,
-                                         const std::vector<Eigen::AlignedBox3d>& rays);
 
 /// What rays are compared with, of objects that have records. The stored layers of their tiles must be those of the
 /// stored outputs. Reads about two hundred tiles at a time.
