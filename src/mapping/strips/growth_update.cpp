@@ -21,6 +21,7 @@
 #include "mapping/window/passed_objects.hpp"
 #include "mapping/window/window_presence.hpp"
 #include "perception/segments/summary_tile.hpp"
+#include "rules/objects/known_splits.hpp"
 
 namespace cluxel::mapping {
 
@@ -45,7 +46,7 @@ class GrowthUpdate {
     cluxels_ = cluxelsIn(new_) + cluxelsIn(other_);
     strip_.told_clouds = former.clouds;
     strip_.keeps_lists = params_.lists_objects;
-    strip_.later = &made_;
+    strip_.splits = &splits_, strip_.later = &made_;
   }
   GrowthUpdate(const GrowthUpdate&) = delete;
   GrowthUpdate& operator=(const GrowthUpdate&) = delete;
@@ -173,6 +174,7 @@ class GrowthUpdate {
   TileSet hidden_;             ///< of the other ones: those beside settled ones
   std::uint64_t cluxels_ = 0;  ///< of new and other tiles
   UpdateParams params_ = work_.params;
+  rules::KnownSplits splits_;  ///< windows of strips overlap
   LaterTargets made_;
   MapStrip strip_;
   ObjectDifference difference_;

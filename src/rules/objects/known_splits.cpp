@@ -81,8 +81,9 @@ void KnownSplits::learn(std::string_view stored) {
 }
 
 const SplitOutcome* KnownSplits::find(const ContentHash& cause) const {
-  const auto found = known_.find(cause);
-  return found == known_.end() ? nullptr : &found->second;
+  for (const auto* outcomes : {&known_, &of_run_})
+    if (const auto found = outcomes->find(cause); found != outcomes->end()) return &found->second;
+  return nullptr;
 }
 
 void KnownSplits::note(const ContentHash& cause, SplitOutcome outcome, bool is_reused) {

@@ -28,7 +28,7 @@ class KnownSplits {
   /// Counts all known outcomes to this run, so that they are stored.
   void keepAll() { of_run_.insert(known_.begin(), known_.end()); }
 
-  /// An earlier outcome; null when there is none. Threads may ask at the same time.
+  /// An outcome that was known or that this run has noted; null when there is none. Threads may ask at the same time.
   const SplitOutcome* find(const ContentHash& cause) const;
   /// Notes an outcome of this run.
   void note(const ContentHash& cause, SplitOutcome outcome, bool is_reused);
