@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tests of files that are not maps, and of damaged maps.
+#include <cstddef>
 #include <cstring>
 #include <fstream>
 #include <random>
 
 #include "base/file_bytes.hpp"
+#include "rdf/file/lmdb_page.hpp"
 #include "rdf/file/map_check.hpp"
 #include "rdf/map_file_fixture.hpp"
 #include "rdf/store/quad_store.hpp"
@@ -85,6 +87,42 @@ TEST_F(MapFile, RefusesAFileThatIsCutShort) {
     fs::resize_file(file_, part);
     EXPECT_THAT(refusal(), testing::AnyOf(HasSubstr("damaged"), HasSubstr("not a Cluxel map"))) << part;
   }
+}
+
+/// LMDB may leave such a page when the disk refuses the meta page of a new commit.
+TEST_F(MapFile, IsThatOfItsNewestCommitWhateverRootsTheOtherMetaPageNames) {
+  put(*create(), "a", "first");
+  put(*open(), "a", "second");
+  std::string bytes = readFile(file_);
+  const auto transactionAt = [&](std::size_t page) {
+    lmdb_page::Meta meta;
+    std::memcpy(&meta, bytes.data() + page * 4096 + lmdb_page::kHeaderSize, sizeof meta);
+    return meta.transaction;
+  };
+  const std::size_t older = transactionAt(0) < transactionAt(1) ? 0 : 1;
+  for (const std::size_t page : {older, 1 - older}) {
+    std::string changed = bytes;
+    const std::uint64_t root = 1'000'000;
+    std::memcpy(changed.data() + page * 4096 + lmdb_page::kHeaderSize + offsetof(lmdb_page::Meta, main) +
+                    offsetof(lmdb_page::Tree, root),
+                &root, sizeof root);
+    std::ofstream(file_, std::ios::binary) << changed;
+    if (page == older)
+      EXPECT_EQ(open(OpenMode::ReadOnly)->read().block("t", "a"), "second");
+    else
+      EXPECT_THAT(refusal(), HasSubstr("damaged"));
+  }
+}
+
+TEST_F(MapFile, IsNotOpenedWithALockFileThatLeadsElsewhere) {
+  put(*create(), "a", "first");
+  const fs::path other = folder_.path() / "other.txt", lock = file_.string() + "-lock";
+  std::ofstream(other) << "important";
+  fs::remove(lock);
+  fs::create_symlink(other, lock);
+  EXPECT_THAT(refusal(OpenMode::ReadWrite), HasSubstr("is a symbolic link"));
+  EXPECT_EQ(open(OpenMode::ReadOnly)->read().block("t", "a"), "first") << "of a private copy";
+  EXPECT_EQ(readFile(other), "important");
 }
 
 TEST_F(MapFile, IsKnownByItsContentWhateverItsName) {

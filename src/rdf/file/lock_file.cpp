@@ -42,12 +42,12 @@ void adoptRights(int lock, int map) {
 /// `is_new`: the file was made by this call.
 Descriptor openLockFile(const fs::path& lock, bool can_make, bool& is_new) {
   is_new = false;
-  Descriptor there(::open(lock.c_str(), O_RDWR | O_CLOEXEC));
+  Descriptor there(::open(lock.c_str(), O_RDWR | O_NOFOLLOW | O_CLOEXEC));
   if (there.get() >= 0 || errno != ENOENT || !can_make) return there;
-  Descriptor made(::open(lock.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
+  Descriptor made(::open(lock.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666));
   is_new = made.get() >= 0;
   if (is_new || errno != EEXIST) return made;
-  return Descriptor(::open(lock.c_str(), O_RDWR | O_CLOEXEC));  // another process was faster
+  return Descriptor(::open(lock.c_str(), O_RDWR | O_NOFOLLOW | O_CLOEXEC));  // another process was faster
 }
 
 }  // namespace
@@ -67,6 +67,10 @@ LockFile prepareLockFile(const fs::path& map, int descriptor, bool can_write) {
 
 void failLockFile(const fs::path& map, const LockFile& lock) {
   const fs::path file = lockFileOf(map);
+  if (lock.reason == ELOOP)
+    throw Error(ErrorKind::StoreUnavailable,
+                map.string() + ": its lock file " + file.string() +
+                    " is a symbolic link, and what it leads to would be overwritten; remove the link");
   struct stat status {};
   if (lock.state == LockFileState::NoRoom || ::stat(file.c_str(), &status) != 0)
     failStore(map, lock.reason, "make its lock file");

@@ -28,4 +28,11 @@ MapCheck checkMap(const std::filesystem::path& file);
 /// True when the file begins with an LMDB meta page. Cost: one page read.
 bool looksLikeMap(const std::filesystem::path& file);
 
+/// True when a process was killed after it had begun the file and before it had committed anything: nothing is in it.
+/// Cost: two page reads.
+bool hasNoCommit(const std::filesystem::path& file);
+
+/// The check of all pages alone. Throws Error (StoreUnavailable) when LMDB could not read them.
+void requireSoundPages(const std::filesystem::path& file);
+
 }  // namespace cluxel::rdf

@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "cluxel/error.hpp"
+#include "rdf/file/file_guards.hpp"
 #include "rdf/file/lmdb_handles.hpp"
 #include "rdf/file/map_check.hpp"
 
@@ -86,6 +87,11 @@ void checkMeta(const Meta& meta, const MapFileHead& head, const std::filesystem:
     refuseDamaged(file, "its head is inconsistent");
   if ((meta.free_pages.flags & kOrderFlags) != MDB_INTEGERKEY || (meta.main.flags & kOrderFlags) != 0)
     refuseDamaged(file, "its head names another order of keys");
+}
+
+/// Of the other meta page LMDB reads the number of its commit alone. When the disk refuses the page of a new commit,
+/// LMDB may leave one there that names roots of that commit.
+void checkRoots(const Meta& meta, const MapFileHead& head, const std::filesystem::path& file) {
   for (const PageNumber root : {meta.main.root, meta.free_pages.root})
     if (root != kNoPage && (root > meta.last_page || (root + 1) * head.page_size > head.file_size))
       refuseDamaged(file, "it is cut short");
@@ -122,9 +128,17 @@ MapFileHead readMapFileHead(int descriptor, const std::filesystem::path& file) {
   for (const auto& meta : head.metas) checkMeta(*meta, head, file);
   if (!areConsecutive(even, odd)) refuseDamaged(file, "its head names commits that do not follow each other");
   const Meta& newest = even.transaction >= odd.transaction ? even : odd;
+  checkRoots(newest, head, file);
   head.last_page = newest.last_page;
   head.transaction = newest.transaction;
   return head;
+}
+
+bool hasNoCommit(const std::filesystem::path& file) {
+  const Descriptor descriptor(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
+  if (descriptor.get() < 0) return false;
+  const std::array<std::optional<Meta>, 2> metas = readMetas(descriptor.get());
+  return metas[0] && metas[1] && metas[0]->transaction == 0 && metas[1]->transaction == 0;
 }
 
 bool looksLikeMap(const std::filesystem::path& file) {
