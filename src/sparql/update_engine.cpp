@@ -249,7 +249,9 @@ void UpdateRun::checkRemovable(const rdf::QuadReader& reader, const std::vector<
        "what a build writes follows from scans, rules and ontology. To correct it, insert what holds instead (it goes "
        "to graph operator), or change rules or ontology and apply them. To delete operator statements alone, write "
        "GRAPH <" +
-           std::string(rdf::vocabulary::kGraphOperator) + "> { ... } in the template or WITH before it");
+           std::string(rdf::vocabulary::kGraphOperator) +
+           "> { ... } in the template or WITH before it. What was stated of an object is withdrawn by "
+           "'state --withdraw'");
 }
 
 void UpdateRun::apply(const rdf::QuadReader& reader, const Changes& changes) {

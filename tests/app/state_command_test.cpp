@@ -84,6 +84,23 @@ TEST_F(StateCommand, AFaultyFileOfStatementsIsNamedWithItsFault) {
   EXPECT_FALSE(fs::exists(path("edited.clx")));
 }
 
+TEST_F(StateCommand, ABuildTakesNoQuadsOfOtherGraphsAsStatements) {
+  ASSERT_EQ(state("--object " + one("Tree") + " --is clx:StreetLamp").code, 0);
+  const fs::path all = path("all.nq");
+  ASSERT_EQ(run("export " + map().string() + " -o " + all.string()).code, 0);
+  expectError(
+      run("build " + path("campus").string() + " -o " + path("taken.clx").string() + " --statements " + all.string()),
+      4, "but --statements takes those of graph");
+  EXPECT_FALSE(fs::exists(path("taken.clx")));
+}
+
+TEST_F(StateCommand, AnUpdateMakesTheGroundNothingElse) {
+  const std::string insert = " { <https://w3id.org/cluxel/map/object/" + one("Ground") + "> ";
+  expectError(run("update " + map().string() + " -e 'INSERT DATA" + insert + "a clx:Building }'"), 2,
+              "is one object over all of the map");
+  EXPECT_EQ(run("update " + map().string() + " -e 'INSERT DATA" + insert + "rdfs:label \"yard\" }'").code, 0);
+}
+
 TEST_F(StateCommand, RefusesWhatCannotBeMeant) {
   const std::string tree = "--object " + one("Tree");
   expectError(state(tree + " --is clx:TreeTrunk"), 2, "is no class of objects");

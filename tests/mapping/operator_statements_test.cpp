@@ -2,9 +2,12 @@
 // Operator's statements are inputs of a map: inference follows them in the same commit, and a build keeps them.
 #include <gtest/gtest.h>
 
+#include "base/file_bytes.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/asking_rules.hpp"
 #include "mapping/change/map_update.hpp"
+#include "mapping/change/rdf_loading.hpp"
+#include "mapping/change/statement_change.hpp"
 #include "sparql/query_engine.hpp"
 
 namespace cluxel::mapping {
@@ -56,6 +59,40 @@ TEST(OperatorStatements, StayWhenAMapIsBuiltAnewUnlessTheyAreDropped) {
   EXPECT_EQ(canonicalText(map), with) << "the same scans, rules and statements make the same map";
   buildPark(folder.path(), {.force = true, .drop_statements = true});
   EXPECT_EQ(canonicalText(map), without);
+}
+
+TEST(OperatorStatements, OfAClassThatTheOntologyLacksAreKeptAsDormant) {
+  const ScratchFolder folder;
+  const auto map = buildPark(folder.path());
+  StatementEdit edit;
+  {
+    const MapReader reader(map);
+    const rules::SemanticObject& object = reader.objects().front();
+    edit.added.push_back({StatementKind::Is,
+                          "",
+                          Term::iri(vocabulary::clx("Unicorn")),
+                          anchorOf(reader.stagesWithPoints(), object),
+                          {}});
+  }
+  const std::vector<Quad> statements = quadsOf(edit.added.front());
+  EXPECT_THROW(changeStatements(map, edit, {}, silence()), Error) << "who states something anew may have mistyped it";
+  buildPark(folder.path(), {.force = true, .statements = statements});
+  EXPECT_EQ(storedStatements(MapReader(map).quads()).size(), 1U);
+  const std::string built = canonicalText(map);
+  const fs::path file = folder.path() / "statements.nq";
+  std::string text;
+  for (const Quad& quad : statements) text += toNQuads(quad);
+  writeFile(file, text);
+  buildPark(folder.path(), {.force = true, .drop_statements = true});
+  loadRdfFiles(map, {file}, {}, silence());
+  EXPECT_TRUE(canonicalText(map) == built);
+}
+
+TEST(OperatorStatements, AreNotWrittenIntoWhatHoldsNothing) {
+  const ScratchFolder folder;
+  const fs::path file = folder.path() / "nothing.clx";
+  rdf::Environment::open(file, rdf::OpenMode::Create);
+  EXPECT_THROW(updateMap(file, kState, {}, silence()), Error);
 }
 
 TEST(OperatorStatements, ChangeObjectsWhereRulesAskForThem) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Builds beside other builds, updates, files of killed builds and foreign files: nothing is lost or mixed.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <lmdb.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -17,6 +19,7 @@
 #include "mapping/facts/map_history.hpp"
 #include "mapping/map_state.hpp"
 #include "mapping/small_campus.hpp"
+#include "rdf/file/map_check.hpp"
 namespace cluxel::mapping {
 
 using namespace scan;
@@ -245,6 +248,33 @@ TEST_F(UnfinishedBuild, AnEmptyFileIsBuiltInto) {
   writeFile(map(), "");
   build();
   EXPECT_EQ(canonicalText(map()), *expected);
+}
+
+/// A process that is killed between the head of the file and its first commit leaves this.
+TEST_F(UnfinishedBuild, AFileWithoutACommitIsBuiltInto) {
+  const auto begin = [](const fs::path& file) {
+    MDB_env* raw = nullptr;
+    ASSERT_EQ(mdb_env_create(&raw), MDB_SUCCESS);
+    EXPECT_EQ(mdb_env_open(raw, file.c_str(), MDB_NOSUBDIR, 0666), MDB_SUCCESS);
+    mdb_env_close(raw);
+    EXPECT_TRUE(rdf::hasNoCommit(file));
+  };
+  begin(map());
+  build();
+  EXPECT_FALSE(rdf::hasNoCommit(map()));
+  EXPECT_EQ(canonicalText(map()), *expected);
+  begin(map().string() + ".building");
+  build({.force = true});
+  EXPECT_EQ(canonicalText(map()), *expected);
+}
+
+TEST_F(UnfinishedBuild, DoesNotWriteThroughALinkWithTheNameOfItsLock) {
+  const fs::path other = map().parent_path() / "other.txt", lock = map().string() + ".build-lock";
+  writeFile(other, "important");
+  fs::create_symlink(other, lock);
+  EXPECT_THAT([&] { build(); }, testing::ThrowsMessage<Error>(testing::HasSubstr("is a symbolic link")));
+  EXPECT_EQ(readFile(other), "important");
+  fs::remove(lock);
 }
 
 TEST_F(UnfinishedBuild, ThatCannotBeMovedIntoPlaceIsNamedAndKept) {

@@ -6,6 +6,7 @@
 #include "mapping/build/map_builder.hpp"
 #include "mapping/statements/statement.hpp"
 #include "rdf/io/rdf_io.hpp"
+#include "rdf/vocabulary.hpp"
 
 namespace cluxel::app {
 
@@ -22,7 +23,13 @@ struct BuildOptions {
 
 std::vector<Quad> statementsIn(const fs::path& file) {
   std::vector<Quad> quads;
-  rdf::parseRdf(rdf::readRdfSource(file), [&quads](const Quad& quad) { quads.push_back(quad); });
+  rdf::parseRdf(rdf::readRdfSource(file), [&](const Quad& quad) {
+    if (!quad.graph.text.empty() && quad.graph.text != rdf::vocabulary::kGraphOperator)
+      throw InputError({.file = file.string()},
+                       "has statements of graph <" + quad.graph.text + ">, but --statements takes those of graph <" +
+                           std::string(rdf::vocabulary::kGraphOperator) + "> alone, as 'state --export' writes them");
+    quads.push_back(quad);
+  });
   try {
     mapping::statementsAmong(quads);
   } catch (const Error& fault) {

@@ -97,8 +97,10 @@ Single singleOf(const Statement& statement) {
 }
 
 /// Withdraws earlier statements about the object in whose place new ones come.
-void replaceEarlier(const mapping::MapReader& map, const ContentHash& object, mapping::StatementEdit& edit,
-                    ProgressSink& sink) {
+/// Returns what is to be told when the change has succeeded.
+std::vector<std::string> replaceEarlier(const mapping::MapReader& map, const ContentHash& object,
+                                        mapping::StatementEdit& edit) {
+  std::vector<std::string> notes;
   for (const mapping::KnownStatement& known : mapping::knownStatements(map.quads())) {
     if (known.object != rdf::iriOfObject(object)) continue;
     const Single single = singleOf(known.statement);
@@ -106,13 +108,14 @@ void replaceEarlier(const mapping::MapReader& map, const ContentHash& object, ma
     const auto comesInPlace = [&](const Statement& added) { return singleOf(added) == single && added.id() != id; };
     if (single == Single::Nothing || std::none_of(edit.added.begin(), edit.added.end(), comesInPlace)) continue;
     edit.withdrawn.push_back(id);
-    sink.note("replaces the statement " + id.hex() + ": " + textOf(known.statement));
+    notes.push_back("replaces the statement " + id.hex() + ": " + textOf(known.statement));
   }
+  return notes;
 }
 
 /// The new statements about the object, and the earlier ones that they replace.
-void addAboutObject(const mapping::MapReader& map, const StateOptions& options, mapping::StatementEdit& edit,
-                    ProgressSink& sink) {
+std::vector<std::string> addAboutObject(const mapping::MapReader& map, const StateOptions& options,
+                                        mapping::StatementEdit& edit, ProgressSink& sink) {
   if (const std::string note = tasks::nameNote(map, options.object); !note.empty()) sink.note(note);
   const ContentHash object = map.objectIds()[tasks::objectNamed(map, options.object)];
   const mapping::PointAnchor anchor = map.anchorOf(object);
@@ -128,16 +131,17 @@ void addAboutObject(const mapping::MapReader& map, const StateOptions& options, 
   if (!edit.added.empty()) refuseWholeClass(map, object);
   if (!options.label.empty()) add(StatementKind::Fact, rdf::vocabulary::rdfs("label"), Term::literal(options.label));
   if (!options.note.empty()) add(StatementKind::Fact, rdf::vocabulary::rdfs("comment"), Term::literal(options.note));
-  replaceEarlier(map, object, edit, sink);
+  return replaceEarlier(map, object, edit);
 }
 
 ExitCode change(const StateOptions& options, Session& session) {
   mapping::requireChangeable(options.map, options.change);
   mapping::StatementEdit edit;
+  std::vector<std::string> notes;
   edit.author = authorOr(options.author);
   {
     const mapping::MapReader map(options.map);
-    if (!options.object.empty()) addAboutObject(map, options, edit, session.console);
+    if (!options.object.empty()) notes = addAboutObject(map, options, edit, session.console);
     if (!options.region.empty())
       edit.added.push_back(
           {StatementKind::IgnoreRegion, "", {}, {}, regionAnchor(map.clouds(), cornersOf(options.region))});
@@ -147,6 +151,7 @@ ExitCode change(const StateOptions& options, Session& session) {
   mapping::ChangeParams params = options.change;
   params.threads = session.threadCount();
   const mapping::ChangeReport report = changeStatements(options.map, edit, params, session.console);
+  for (const std::string& note : notes) session.console.note(note);
   if (!session.json)
     for (const mapping::StatementOutcome& outcome : report.statements)
       for (const Statement& added : edit.added)

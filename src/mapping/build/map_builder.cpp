@@ -25,6 +25,7 @@
 #include "mapping/facts/semantic_layer.hpp"
 #include "mapping/layers/stored_layers.hpp"
 #include "mapping/map_state.hpp"
+#include "mapping/statements/stated_subjects.hpp"
 #include "mapping/statements/stated_values.hpp"
 #include "mapping/window/semantic_update.hpp"
 #include "rdf/store/quad_store.hpp"
@@ -218,11 +219,20 @@ BuildReport built(const scan::ScanSet& scans, const MapInputs& inputs, const fs:
   // A faulty statement is refused before anything is written.
   for (const Statement& statement : statementsAmong(params.statements)) {
     try {
-      requireStatable(statement, parsed.rules.catalogue);
+      if (isOfUnknownClass(statement, parsed.rules.catalogue))
+        sink.note(noteOfUnknownClass(statement));
+      else
+        requireStatable(statement, parsed.rules.catalogue);
     } catch (const Error& fault) {
       throw Error(ErrorKind::FaultyInput, "operator statement " + statement.id().hex() + ": " + fault.what());
     }
   }
+  const auto about_objects = std::count_if(params.statements.begin(), params.statements.end(),
+                                           [](const Quad& quad) { return namesObject(quad.subject); });
+  if (about_objects > 0)
+    sink.note(std::to_string(about_objects) +
+              " statements name objects and change none in a build: objects are known in a map only; load the file "
+              "into the finished map instead");
   WorkFile work(file, complete.hash().hex(), params.force);
   if (!params.refine_poses) noteDoubtfulPoses(scans, params.threads, sink);
   const scan::ScanSet posed = params.refine_poses ? withRefinedPoses(scans, params.threads, sink) : scans;

@@ -8,6 +8,7 @@
 #include "mapping/build/operator_statements.hpp"
 #include "mapping/map_tables.hpp"
 #include "mapping/statements/statement.hpp"
+#include "rdf/file/map_check.hpp"
 #include "rdf/file/map_replacement.hpp"
 #include "rdf/store/quad_store.hpp"
 
@@ -28,21 +29,13 @@ struct Found {
   bool isFinished() const { return state && state->is_finished; }
 };
 
-bool holdsNothing(const rdf::ReadTransaction& transaction) {
-  bool has_blocks = false;
-  for (const std::string_view table : {tables::kMeta, tables::kScans})
-    transaction.forEachBlock(table, "", [&](std::string_view, std::string_view) { has_blocks = true; });
-  const rdf::QuadReader quads(transaction);
-  return !has_blocks && quads.size() == 0 && quads.termCount() == 0;
-}
-
 Found lookAt(const fs::path& file) {
   using enum Found::Kind;
   std::error_code ignored;
   if (!mayBeThere(file)) return {};
   if (fs::is_directory(file, ignored))
     throw Error(ErrorKind::StoreUnavailable, file.string() + ": is a folder, a map was expected");
-  if (fs::is_regular_file(file, ignored) && fs::file_size(file) == 0) return {Empty};
+  if (fs::is_regular_file(file, ignored) && (fs::file_size(file) == 0 || rdf::hasNoCommit(file))) return {Empty};
   const rdf::ReadTransaction transaction = rdf::Environment::open(file, rdf::OpenMode::ReadOnly)->read();
   if (const auto state = storedState(transaction)) return {Build, state};
   return {holdsNothing(transaction) ? Empty : OtherStore};
@@ -66,6 +59,14 @@ void removeMap(const fs::path& file) {
 }
 
 }  // namespace
+
+bool holdsNothing(const rdf::ReadTransaction& transaction) {
+  bool has_blocks = false;
+  for (const std::string_view table : {tables::kMeta, tables::kScans})
+    transaction.forEachBlock(table, "", [&](std::string_view, std::string_view) { has_blocks = true; });
+  const rdf::QuadReader quads(transaction);
+  return !has_blocks && quads.size() == 0 && quads.termCount() == 0;
+}
 
 void requireSomething(const rdf::ReadTransaction& transaction, const fs::path& file) {
   if (!holdsNothing(transaction)) return;

@@ -41,11 +41,14 @@ rdf::InferenceCheck checkOf(const sparql::QueryBudget& budget, Clock::time_point
 
 /// Checks and records statements that the update made or withdrew as quads. False when there are none.
 bool takeNewStatements(rdf::WriteTransaction& transaction, const rules::ClassCatalogue& classes,
-                       const std::string& author) {
+                       const std::string& author, ProgressSink& sink) {
   const NewStatements news = newStatements(transaction);
   std::vector<ContentHash> made;
   for (const Statement& statement : news.made) {
-    requireStatable(statement, classes);
+    if (isOfUnknownClass(statement, classes))  // such as one of a map that had another ontology then
+      sink.note(noteOfUnknownClass(statement));
+    else
+      requireStatable(statement, classes);
     requireNoWholeClass(transaction, statement);
     made.push_back(statement.id());
   }
@@ -59,7 +62,7 @@ void inferAfterUpdate(rdf::WriteTransaction& transaction, ProgressSink& sink, co
                       const MapUpdateParams& params) {
   const ParsedInputs parsed = parseInputs(storedInputs(transaction));
   anchorStatedObjects(transaction, parsed, sink);
-  const bool has_news = takeNewStatements(transaction, parsed.rules.catalogue, params.author);
+  const bool has_news = takeNewStatements(transaction, parsed.rules.catalogue, params.author, sink);
   if (!parsed.rules.asks_map && !has_news) return inferFacts(transaction, parsed.inputs, sink, check);
   const double started_s = secondsNow();
   StageClock clock(sink);
@@ -82,6 +85,10 @@ sparql::UpdateReport updateMap(const std::filesystem::path& file, const std::str
   rdf::WriteTransaction transaction = rdf::writeMap(file);
   const bool is_map = requireFinished(file, transaction);
   requireSomething(transaction, file);
+  if (!is_map && holdsNothing(transaction))
+    throw Error(ErrorKind::StoreUnavailable, file.string() +
+                                                 ": holds nothing, perhaps because its first build was killed; repeat "
+                                                 "the build, or load something first");
   if (is_map && options.any_graph_writable)
     throw Error(ErrorKind::InvalidArgument, file.string() +
                                                 ": is a map, of which only the operator's statements may be "

@@ -16,11 +16,6 @@ namespace cluxel::mapping {
 
 namespace {
 
-bool namesObject(const Term& subject) {
-  return subject.kind == TermKind::Iri &&
-         (subject.text.starts_with(rdf::mapIri("object", "")) || subject.text.starts_with(rdf::mapIri("thing", "")));
-}
-
 /// The present object that an IRI means.
 class StatedObjects {
  public:
@@ -30,15 +25,23 @@ class StatedObjects {
         lineage_(rdf::QuadReader(transaction), storedObjectIds(transaction)) {}
 
   std::optional<PointAnchor> anchorOfIri(const std::string& iri) {
-    std::optional<ContentHash> object = hashIn(iri, "object");
-    if (!object || !storedRecord(transaction_, *object)) {
-      const auto former = lineage_.find(iri);
-      object = former ? std::optional(former->object) : std::nullopt;
-    }
+    const std::optional<ContentHash> object = objectOf(iri);
     return object ? std::optional(anchorOfStored(transaction_, stages_, *object)) : std::nullopt;
+  }
+  bool isOfWholeClass(const std::string& iri) const {
+    const std::optional<ContentHash> object = objectOf(iri);
+    const auto record = object ? storedRecord(transaction_, *object) : std::nullopt;
+    return record && record->is_class_wide;
   }
 
  private:
+  std::optional<ContentHash> objectOf(const std::string& iri) const {
+    const std::optional<ContentHash> object = hashIn(iri, "object");
+    if (object && storedRecord(transaction_, *object)) return object;
+    const auto former = lineage_.find(iri);
+    return former ? std::optional(former->object) : std::nullopt;
+  }
+
   const rdf::ReadTransaction& transaction_;
   TileStages stages_;
   Lineage lineage_;
@@ -59,6 +62,11 @@ Statement statementOf(const Quad& quad, PointAnchor anchor, const rules::ClassCa
 
 }  // namespace
 
+bool namesObject(const Term& subject) {
+  return subject.kind == TermKind::Iri &&
+         (subject.text.starts_with(rdf::mapIri("object", "")) || subject.text.starts_with(rdf::mapIri("thing", "")));
+}
+
 void anchorStatedObjects(rdf::WriteTransaction& transaction, const ParsedInputs& parsed, ProgressSink& sink) {
   std::vector<Quad> about_objects;
   for (Quad& quad : operatorStatements(rdf::QuadReader(static_cast<const rdf::ReadTransaction&>(transaction))))
@@ -75,6 +83,11 @@ void anchorStatedObjects(rdf::WriteTransaction& transaction, const ParsedInputs&
       continue;
     }
     const Statement statement = statementOf(quad, std::move(*anchor), parsed.rules.catalogue);
+    if (statement.kind == StatementKind::Is && objects.isOfWholeClass(quad.subject.text))
+      throw Error(ErrorKind::InvalidArgument,
+                  "<" + quad.subject.text +
+                      "> is one object over all of the map: its class cannot be stated, which would "
+                      "change all of it; other properties can");
     writer.remove(rdf::QuadIds{writer.intern(quad.subject), writer.intern(quad.predicate), writer.intern(quad.object),
                                writer.intern(quad.graph)});
     for (const Quad& stated : quadsOf(statement)) writer.add(stated);

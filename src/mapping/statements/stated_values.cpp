@@ -113,6 +113,16 @@ void requireStatable(const Statement& statement, const rules::ClassCatalogue& cl
     throw Error(ErrorKind::InvalidArgument, "the value of <" + statement.property + "> is not UTF-8");
 }
 
+bool isOfUnknownClass(const Statement& statement, const rules::ClassCatalogue& classes) {
+  return (statement.kind == StatementKind::Is || statement.kind == StatementKind::IsNot) &&
+         statement.value.kind == TermKind::Iri && classes.find(statement.value.text) == nullptr;
+}
+
+std::string noteOfUnknownClass(const Statement& statement) {
+  return "the statement " + statement.id().hex() + " is dormant: the map's ontology knows no class <" +
+         statement.value.text + ">";
+}
+
 void requireNoWholeClass(const rdf::ReadTransaction& transaction, const Statement& statement) {
   if (statement.kind != StatementKind::Is || !storedRecord(transaction, rules::idOfClassWide(statement.value.text)))
     return;

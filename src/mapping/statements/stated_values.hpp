@@ -2,6 +2,8 @@
 // What may be stated about objects.
 #pragma once
 
+#include <string>
+
 #include "mapping/statements/statement.hpp"
 #include "rdf/file/environment.hpp"
 #include "rules/language/class_catalogue.hpp"
@@ -15,6 +17,11 @@ void requireStatable(const std::string& property);
 /// objects (a part, a place, a cluxel), and a region without area or with a corner farther than 1000 km from its scan.
 /// Throws Error (NotFound) for a class that the ontology does not know.
 void requireStatable(const Statement& statement, const rules::ClassCatalogue& classes);
+
+/// Whether the statement names a class that the ontology does not know. It is dormant until an ontology has the class.
+bool isOfUnknownClass(const Statement& statement, const rules::ClassCatalogue& classes);
+/// Tells that for people.
+std::string noteOfUnknownClass(const Statement& statement);
 
 /// Throws Error (InvalidArgument) for the statement that something is of a class of which the map has one object over
 /// all of it, as the ground.
