@@ -151,6 +151,28 @@ TEST_F(FolderWatch, MovesScansWhosePosesAreCorrected) {
   EXPECT_TRUE(canonicalText(map()) == builtText({scans()}, *inputs));
 }
 
+TEST_F(FolderWatch, LeavesAScanWhereItIsWhenACopyOfItHasAnotherPose) {
+  const fs::path poses = scans() / "poses.txt";
+  std::vector<fs::path> files{campus->files()[0], campus->files()[1], campus->files()[2]};
+  writePoses(poses, files, 2, 0);
+  arrive(0);
+  arrive(1);
+  WatchCallbacks callbacks;
+  callbacks.inputs = [] { return *inputs; };
+  const auto look = [&] {
+    return watchFolder(scans(), map(), {.threads = 1, .interval_s = 0.05, .idle_s = 0.4}, callbacks, notes);
+  };
+  EXPECT_EQ(look(), 2U);
+  const std::string two = canonicalText(map());
+  fs::copy_file(scans() / files[0].filename(), scans() / "zz_copy.pcd");
+  writePoses(poses, files, 3, 0);  // the third pose is that of the copy
+  for (int run = 0; run < 3; ++run) {
+    EXPECT_EQ(look(), 0U);
+    EXPECT_TRUE(canonicalText(map()) == two) << "run " << run;
+  }
+  EXPECT_THAT(notes.all, ::testing::Contains(::testing::HasSubstr("is the same scan as another file of the folder")));
+}
+
 TEST_F(FolderWatch, BeginsInAnEmptyFile) {
   writeFile(map(), "");
   arrive(0);

@@ -2,6 +2,7 @@
 // A map is a function of its scans and inputs: independent of order, threads, batches and killed builds.
 #include "mapping/build/map_builder.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -237,6 +238,24 @@ TEST_F(MapBuilder, TheSameScanWithAndWithoutAPoseIsAnErrorInEitherOrder) {
       EXPECT_NE(std::string(error.what()).find("is the same scan as"), std::string::npos) << error.what();
     }
   }
+}
+
+TEST_F(MapBuilder, TheSameScanWithAnotherPoseIsToldHowFarAwayItIs) {
+  writeFile(folder.path() / "lone.xyz", "1 2 0\n1.1 2 0\n1.2 2 0\n");
+  const auto posed = [&](const std::string& name, const std::string& x) {
+    writeFile(folder.path() / name, "scans: [{path: lone.xyz, pose: {xyz: [" + x + ", 0, 0]}}]\n");
+    return folder.path() / name;
+  };
+  const auto refusal = [&](const std::string& x) -> std::string {
+    try {
+      build({posed("one.yaml", "10"), posed("other.yaml", x)});
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "built";
+  };
+  EXPECT_THAT(refusal("10.25"), testing::HasSubstr("0.250 m and 0.000 degrees away"));
+  EXPECT_THAT(refusal("10.0000000001"), testing::HasSubstr("differs by rounding alone"));
 }
 
 TEST_F(MapBuilder, FaultyInputsWriteNothing) {

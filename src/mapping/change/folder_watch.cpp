@@ -63,8 +63,11 @@ class Watch {
       std::this_thread::sleep_for(std::chrono::duration<double>(params_.interval_s));
     }
     extension_.close();
-    if (added_ > 0) compactIfSparse(map_, sink_, kMaxFreeShareOfChanged);
-    return added_;
+    if (added_ + moved_ > 0)
+      compactIfSparse(map_, sink_, kMaxFreeShareOfChanged);
+    else
+      finishCompaction(map_, sink_);
+    return added_ + moved_;
   }
 
  private:
@@ -112,7 +115,7 @@ class Watch {
   bool move(const scan::ScanSet& scans, const std::vector<std::size_t>& candidates) {
     extension_.close();
     std::map<scan::ScanId, ScanPose> poses;
-    std::set<scan::ScanId> ambiguous;
+    std::map<scan::ScanId, std::size_t> ambiguous;  // one scan in two files with different poses
     {
       const auto environment = rdf::Environment::open(map_, rdf::OpenMode::ReadOnly);
       const rdf::ReadTransaction transaction = environment->read();
@@ -120,19 +123,42 @@ class Watch {
         const scan::ScanFile& file = scans.file(i);
         const std::optional<scan::ScanId> id = file.has_pose ? idOf(scans, i) : std::nullopt;
         const std::optional<Cloud> cloud = id ? storedCloud(transaction, *id) : std::nullopt;
-        if (!cloud || (cloud->has_pose && cloud->T_map_sensor.matrix() == file.T_map_sensor.matrix())) continue;
-        if (!poses.emplace(*id, ScanPose{*id, file.T_map_sensor}).second) ambiguous.insert(*id);  // one scan, two files
+        if (!cloud) continue;
+        const auto [known, is_new] = poses.emplace(*id, ScanPose{*id, file.T_map_sensor});
+        const bool is_copy = hasOtherFile(scans, i, *id, *cloud);
+        if (is_copy || (!is_new && known->second.T_map_sensor.matrix() != file.T_map_sensor.matrix()))
+          ambiguous.emplace(*id, i);
       }
+      std::erase_if(poses, [&](const auto& entry) {
+        const Cloud cloud = storedCloud(transaction, entry.first).value();
+        return ambiguous.contains(entry.first) ||
+               (cloud.has_pose && cloud.T_map_sensor.matrix() == entry.second.T_map_sensor.matrix());
+      });
     }
-    for (const scan::ScanId& id : ambiguous) poses.erase(id);
+    for (const auto& [id, i] : ambiguous)
+      if (told_copies_.insert(id).second)
+        sink_.note(
+            scans.file(i).path.string() +
+            ": is the same scan as another file of the folder, with another pose; it stays where it is in the map "
+            "until one of the files is removed");
     notePlaces(scans.only(candidates));
     if (poses.empty()) return false;
     std::vector<ScanPose> moves;
     for (const auto& [id, pose] : poses) moves.push_back(pose);
     const ChangeReport report = moveScans(map_, moves, {.threads = params_.threads}, sink_);
     sink_.note("scans moved to the poses that the folder has now: " + std::to_string(moves.size()));
+    moved_ += moves.size();
     tell(0, report.scans, report.object_count);
     return true;
+  }
+
+  /// Whether the cloud came from another file of the folder, which still holds the scan and gives it another pose.
+  static bool hasOtherFile(const scan::ScanSet& scans, std::size_t i, const scan::ScanId& id, const Cloud& cloud) {
+    for (std::size_t j = 0; j < scans.size(); ++j)
+      if (j != i && scans.file(j).path.filename() == fs::path(cloud.source).filename() &&
+          scans.file(j).T_map_sensor.matrix() != scans.file(i).T_map_sensor.matrix() && idOf(scans, j) == id)
+        return true;
+    return false;
   }
 
   /// Absent when the scan cannot be read.
@@ -217,7 +243,8 @@ class Watch {
   FolderState done_;                              ///< scans that were added, or could not be read, as they were then
   std::string last_fault_;
   bool is_built_ = false;  ///< nothing is left of a first build
-  std::size_t added_ = 0;
+  std::set<scan::ScanId> told_copies_;
+  std::size_t added_ = 0, moved_ = 0;
 };
 
 }  // namespace

@@ -28,7 +28,7 @@ struct WatchCallbacks {
 /// one commit, which is then the exact map of all scans so far; scans whose poses are corrected meanwhile are moved;
 /// the first ones build it when it is not there. Until a folder can be read as a set of scans (a pose is still
 /// missing), it waits. A fault that stays for two looks is a note, and so is a scan that cannot be read, which is tried
-/// again when its file changes. Throws Error for faults of the map. Returns the number of scans that were added.
+/// again when its file changes. Throws Error for faults of the map. Returns how many scans were added or moved.
 std::size_t watchFolder(const std::filesystem::path& folder, const std::filesystem::path& map,
                         const WatchParams& params, const WatchCallbacks& callbacks, ProgressSink& sink);
 

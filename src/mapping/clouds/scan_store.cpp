@@ -3,7 +3,10 @@
 #include "mapping/clouds/scan_store.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cstdio>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "base/parallel.hpp"
 #include "cluxel/error.hpp"
@@ -102,6 +105,20 @@ void keepLaterTime(rdf::WriteTransaction& transaction, Cloud there, std::optiona
   transaction.putBlock(tables::kScans, tables::keyOf(there.id), toBytes(there));
 }
 
+/// Poses that are closer differ because numbers were written or computed in another way.
+constexpr double kRounding_m = 1e-6, kRounding_deg = 1e-6;
+
+/// "with another pose (0.123 m and 0.450 degrees away)".
+std::string differenceOf(const Eigen::Isometry3d& given, const Eigen::Isometry3d& there) {
+  const double moved_m = (given.translation() - there.translation()).norm();
+  const double turned_deg =
+      Eigen::AngleAxisd(given.linear() * there.linear().transpose()).angle() * 180 / std::numbers::pi;
+  std::array<char, 96> text{};
+  if (moved_m < kRounding_m && turned_deg < kRounding_deg) return "with a pose that differs by rounding alone";
+  std::snprintf(text.data(), text.size(), "with another pose (%.3f m and %.3f degrees away)", moved_m, turned_deg);
+  return text.data();
+}
+
 /// Whether the map has the scan, which then gets the later of the two times. Refuses it with another pose: sensor
 /// positions are stored only for scans with a pose, so a scan given with and without one would make the map depend on
 /// arrival order.
@@ -112,10 +129,10 @@ bool isThere(rdf::WriteTransaction& transaction, const Cloud& given) {
     keepLaterTime(transaction, *std::move(there), given.time_s);
     return true;
   }
-  const std::string how = there->has_pose == given.has_pose ? "with another pose"
+  const std::string how = there->has_pose == given.has_pose ? differenceOf(given.T_map_sensor, there->T_map_sensor)
                           : given.has_pose                  ? "now with a pose"
                                                             : "now without a pose";
-  throw InputError({.file = given.source}, "is the same scan as '" + there->source + "', " + how,
+  throw InputError({.file = given.source}, "is the same scan as '" + there->source + "' of the map, " + how,
                    "give each scan once; to correct its pose, move the scan in the map", Remedy::MoveScans);
 }
 
