@@ -115,6 +115,7 @@ int main(int argc, char** argv) {
   occupyStandardStreams();
   reuseFreedMemory();
   std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that becomes larger than allowed (ulimit -f) is an error of its write
   try {
     const int code = runProgram(argc, argv);
     if (lostData())

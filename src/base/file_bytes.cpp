@@ -10,6 +10,7 @@
 #include <atomic>
 #include <cerrno>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <memory>
 #include <utility>
@@ -130,6 +131,16 @@ fs::path withoutLinks(fs::path path) {
     path = path.parent_path() / target;  // an absolute target replaces all
   }
   return path;
+}
+
+std::filesystem::path temporaryFolderPath() {
+  std::error_code error;
+  const std::filesystem::path folder = std::filesystem::temp_directory_path(error);
+  if (!error) return folder;
+  const char* named = std::getenv("TMPDIR");
+  throw Error(ErrorKind::StoreUnavailable, std::string(named != nullptr ? named : "/tmp") +
+                                               ": the folder for temporary files cannot be used (" + error.message() +
+                                               "); set TMPDIR to a folder that you may write");
 }
 
 void syncFolderOf(const fs::path& file) {

@@ -30,6 +30,9 @@ void writeFile(const std::filesystem::path& path, std::string_view bytes);
 /// Where a symbolic link, or a chain of them, leads to, be there something or not; `path` itself when it is no link.
 std::filesystem::path withoutLinks(std::filesystem::path path);
 
+/// The folder of TMPDIR, or /tmp; Error (StoreUnavailable) when there is no such folder.
+std::filesystem::path temporaryFolderPath();
+
 /// Makes the disk keep that `file` was made, renamed or removed, as far as the system can.
 void syncFolderOf(const std::filesystem::path& file);
 

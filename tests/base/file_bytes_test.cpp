@@ -180,5 +180,20 @@ TEST_F(FileBytes, LeaveNoPartWhenTheyCannotBeMovedIntoPlace) {
   EXPECT_EQ(filesThere(), 1U);
 }
 
+TEST(TemporaryFolderPath, IsToldWhenItIsNone) {
+  const char* before = std::getenv("TMPDIR");
+  const std::string kept = before != nullptr ? before : "";
+  ASSERT_EQ(::setenv("TMPDIR", "/there/is/none", 1), 0);
+  try {
+    temporaryFolderPath();
+    ADD_FAILURE() << "there is no such folder";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::StoreUnavailable);
+    EXPECT_NE(std::string(error.what()).find("/there/is/none"), std::string::npos) << error.what();
+  }
+  before != nullptr ? ::setenv("TMPDIR", kept.c_str(), 1) : ::unsetenv("TMPDIR");
+  EXPECT_TRUE(std::filesystem::is_directory(temporaryFolderPath()));
+}
+
 }  // namespace
 }  // namespace cluxel

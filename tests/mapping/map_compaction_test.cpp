@@ -46,6 +46,18 @@ TEST_F(MapCompaction, FollowsMuchFreeSpaceAndKeepsTheMap) {
   EXPECT_FALSE(fs::exists(map.string() + ".compact"));
 }
 
+TEST_F(MapCompaction, ThatWasKilledIsFinishedByTheNextCommandThatChangesNothing) {
+  const fs::path map = copy();
+  const auto before = fs::file_size(map);
+  leaveFree(map, 8'000'000);
+  finishCompaction(map, silence());
+  EXPECT_GT(fs::file_size(map), before + 7'000'000) << "none was begun";
+  writeFile(map.string() + ".compact", "half of a copy");
+  finishCompaction(map, silence());
+  EXPECT_LT(fs::file_size(map), before + 100'000);
+  EXPECT_FALSE(fs::exists(map.string() + ".compact"));
+}
+
 TEST_F(MapCompaction, LeavesAsMuchFreeSpaceAsItIsAllowedTo) {
   const fs::path map = copy();
   const auto before = fs::file_size(map);

@@ -228,8 +228,11 @@ ChangeReport appliedTo(const fs::path& file, const std::function<MapInputs(MapIn
 
 /// Frees the space that a committed change has left, where it is too much.
 ChangeReport compacted(ChangeReport report, const fs::path& file, const ChangeParams& params, ProgressSink& sink) {
-  if (report.has_changes && !params.dry_run && params.may_compact)
+  if (params.dry_run || !params.may_compact) return report;
+  if (report.has_changes)
     compactIfSparse(file, report.free_space, sink, kMaxFreeShareOfChanged);
+  else
+    finishCompaction(file, sink);
   return report;
 }
 

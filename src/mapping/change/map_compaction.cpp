@@ -117,4 +117,9 @@ void compactIfSparse(const fs::path& map, const rdf::FreeSpace& space, ProgressS
   }
 }
 
+void finishCompaction(const fs::path& map, ProgressSink& sink) {
+  std::error_code ignored;
+  if (fs::exists(copyOf(map), ignored)) compactIfSparse(map, sink, kMaxFreeShareOfChanged);
+}
+
 }  // namespace cluxel::mapping

@@ -32,4 +32,7 @@ void compactIfSparse(const std::filesystem::path& map, ProgressSink& sink, doubl
 void compactIfSparse(const std::filesystem::path& map, const rdf::FreeSpace& space, ProgressSink& sink,
                      double max_free_share);
 
+/// Compacts a map when a compaction was killed and has left its copy beside the map.
+void finishCompaction(const std::filesystem::path& map, ProgressSink& sink);
+
 }  // namespace cluxel::mapping

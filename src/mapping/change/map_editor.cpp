@@ -97,7 +97,7 @@ void requireChangeable(const fs::path& file, const ChangeParams& params) {
 
 std::string noteOfCopy(const fs::path& file) {
   return file.string() + ": you may not write it or its folder; the dry run works on a copy in " +
-         fs::temp_directory_path().string();
+         temporaryFolderPath().string();
 }
 
 MapEditor::MapEditor(const fs::path& file, const ChangeParams& params, ProgressSink& sink)

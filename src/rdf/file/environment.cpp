@@ -223,7 +223,7 @@ std::shared_ptr<Environment> Environment::open(const fs::path& file, OpenMode mo
 
 std::shared_ptr<Environment> Environment::temporary() {
   const TemporaryFolder folder;
-  if (folder.path().empty()) failStore(fs::temp_directory_path(), errno, "make a temporary map");
+  if (folder.path().empty()) failStore(temporaryFolderPath(), errno, "make a temporary map");
   auto environment = openOnce(folder.path() / "temporary.clx", OpenMode::Create, MDB_NOSYNC);
   environment->loseName();
   return environment;
@@ -231,7 +231,7 @@ std::shared_ptr<Environment> Environment::temporary() {
 
 std::shared_ptr<Environment> Environment::temporaryCopyOf(const fs::path& file) {
   const TemporaryFolder folder;
-  if (folder.path().empty()) failStore(fs::temp_directory_path(), errno, "make a temporary map");
+  if (folder.path().empty()) failStore(temporaryFolderPath(), errno, "make a temporary map");
   const fs::path copy = folder.path() / file.filename();
   open(file, OpenMode::ReadOnly)->compactTo(copy, CopiedPages::AsTheyAre);
   auto environment = openOnce(copy, OpenMode::ReadWrite, MDB_NOSYNC);

@@ -13,6 +13,7 @@
 #include <string>
 #include <thread>
 
+#include "base/file_bytes.hpp"
 #include "rdf/file/lmdb_handles.hpp"
 #include "rdf/file/map_replacement.hpp"
 
@@ -40,7 +41,7 @@ void lockNameByte(int descriptor, short kind) {
 }  // namespace
 
 TemporaryFolder::TemporaryFolder() {
-  std::string name = (fs::temp_directory_path() / "cluxel-XXXXXX").string();
+  std::string name = (temporaryFolderPath() / "cluxel-XXXXXX").string();
   if (::mkdtemp(name.data()) != nullptr) path_ = name;
 }
 

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "base/file_bytes.hpp"
 #include "cluxel/error.hpp"
 #include "rdf/file/lmdb_handles.hpp"
 
@@ -48,7 +49,7 @@ int copyBytes(int from, int to) {
 }  // namespace
 
 PrivateCopy::PrivateCopy(const fs::path& map, int descriptor) {
-  if (folder_.path().empty()) failCopy(map, fs::temp_directory_path(), errno);
+  if (folder_.path().empty()) failCopy(map, temporaryFolderPath(), errno);
   file_ = folder_.path() / "copy.clx";
   copy_ = Descriptor(::open(file_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600));
   int code = copy_.get() < 0 ? errno : 0;
