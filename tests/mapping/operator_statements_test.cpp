@@ -88,13 +88,6 @@ TEST(OperatorStatements, OfAClassThatTheOntologyLacksAreKeptAsDormant) {
   EXPECT_TRUE(canonicalText(map) == built);
 }
 
-TEST(OperatorStatements, AreNotWrittenIntoWhatHoldsNothing) {
-  const ScratchFolder folder;
-  const fs::path file = folder.path() / "nothing.clx";
-  rdf::Environment::open(file, rdf::OpenMode::Create);
-  EXPECT_THROW(updateMap(file, kState, {}, silence()), Error);
-}
-
 TEST(OperatorStatements, ChangeObjectsWhereRulesAskForThem) {
   const ScratchFolder folder;
   const auto map = buildAskingMap(folder.path());

@@ -73,6 +73,7 @@ TEST(KnownSplits, AreTakenInsteadOfASearch) {
   EXPECT_EQ(taken, expected);
   EXPECT_EQ(known.count(), 2U);
   EXPECT_EQ(known.reused(), 1U);
+  EXPECT_EQ(both.split(&false_outcome), expected) << "what this run has noted is taken, too";
 }
 
 TEST(KnownSplits, AreNotTakenWhenAnythingThatTheyFollowFromHasChanged) {

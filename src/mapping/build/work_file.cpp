@@ -29,6 +29,14 @@ struct Found {
   bool isFinished() const { return state && state->is_finished; }
 };
 
+bool holdsNothing(const rdf::ReadTransaction& transaction) {
+  bool has_blocks = false;
+  for (const std::string_view table : {tables::kMeta, tables::kScans})
+    transaction.forEachBlock(table, "", [&](std::string_view, std::string_view) { has_blocks = true; });
+  const rdf::QuadReader quads(transaction);
+  return !has_blocks && quads.size() == 0 && quads.termCount() == 0;
+}
+
 Found lookAt(const fs::path& file) {
   using enum Found::Kind;
   std::error_code ignored;
@@ -59,14 +67,6 @@ void removeMap(const fs::path& file) {
 }
 
 }  // namespace
-
-bool holdsNothing(const rdf::ReadTransaction& transaction) {
-  bool has_blocks = false;
-  for (const std::string_view table : {tables::kMeta, tables::kScans})
-    transaction.forEachBlock(table, "", [&](std::string_view, std::string_view) { has_blocks = true; });
-  const rdf::QuadReader quads(transaction);
-  return !has_blocks && quads.size() == 0 && quads.termCount() == 0;
-}
 
 void requireSomething(const rdf::ReadTransaction& transaction, const fs::path& file) {
   if (!holdsNothing(transaction)) return;

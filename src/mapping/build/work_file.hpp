@@ -14,9 +14,6 @@
 
 namespace cluxel::mapping {
 
-/// Whether there are neither quads nor scans nor a state: nothing was committed, or all was taken back.
-bool holdsNothing(const rdf::ReadTransaction& transaction);
-
 /// Whether a build begins or goes on at this name: there is no map, or one whose build was interrupted. Throws Error
 /// (StoreUnavailable) for what is no map.
 bool isToBuild(const std::filesystem::path& map);

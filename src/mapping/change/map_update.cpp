@@ -85,10 +85,6 @@ sparql::UpdateReport updateMap(const std::filesystem::path& file, const std::str
   rdf::WriteTransaction transaction = rdf::writeMap(file);
   const bool is_map = requireFinished(file, transaction);
   requireSomething(transaction, file);
-  if (!is_map && holdsNothing(transaction))
-    throw Error(ErrorKind::StoreUnavailable, file.string() +
-                                                 ": holds nothing, perhaps because its first build was killed; repeat "
-                                                 "the build, or load something first");
   if (is_map && options.any_graph_writable)
     throw Error(ErrorKind::InvalidArgument, file.string() +
                                                 ": is a map, of which only the operator's statements may be "
