@@ -15,7 +15,6 @@
 #include "mapping/map_part.hpp"
 #include "mapping/map_state.hpp"
 #include "mapping/statements/overruled_objects.hpp"
-#include "rdf/file/map_check.hpp"
 #include "rdf/iri.hpp"
 
 namespace cluxel::mapping {
@@ -232,7 +231,6 @@ const rdf::ReadTransaction& MapReader::transaction() const {
 }
 
 std::vector<rdf::LayerSize> MapReader::layers() const {
-  rdf::requireSoundPages(impl_->environment->file());  // pages are walked that no query reads
   return rdf::layerSizes(impl_->transaction);
 }
 MapInputs MapReader::inputs() const {

@@ -250,8 +250,9 @@ void UpdateRun::checkRemovable(const rdf::QuadReader& reader, const std::vector<
        "to graph operator), or change rules or ontology and apply them. To delete operator statements alone, write "
        "GRAPH <" +
            std::string(rdf::vocabulary::kGraphOperator) +
-           "> { ... } in the template or WITH before it. What was stated of an object is withdrawn by "
-           "'state --withdraw'");
+           "> { ... } in the template or WITH before it. What follows from an operator statement goes when the "
+           "statement "
+           "is withdrawn");
 }
 
 void UpdateRun::apply(const rdf::QuadReader& reader, const Changes& changes) {

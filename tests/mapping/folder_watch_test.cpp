@@ -171,6 +171,18 @@ TEST_F(FolderWatch, LeavesAScanWhereItIsWhenACopyOfItHasAnotherPose) {
     EXPECT_TRUE(canonicalText(map()) == two) << "run " << run;
   }
   EXPECT_THAT(notes.all, ::testing::Contains(::testing::HasSubstr("is the same scan as another file of the folder")));
+  // While it watches, the copy goes, and the pose of the scan is corrected.
+  callbacks.committed = [](std::size_t, std::size_t, std::size_t) {};
+  std::size_t looks = 0;
+  callbacks.is_stopped = [&] {
+    if (++looks == 6) {
+      fs::remove(scans() / "zz_copy.pcd");
+      writePoses(poses, files, 2, 0.5);
+    }
+    return false;
+  };
+  EXPECT_EQ(look(), 1U) << "moved";
+  EXPECT_TRUE(canonicalText(map()) == builtText({scans()}, *inputs));
 }
 
 TEST_F(FolderWatch, BeginsInAnEmptyFile) {

@@ -51,11 +51,12 @@ class ComputedTiles : public ProgressSink {
 };
 
 enum class Times { Known, Unknown };
+enum class Rays { Short, Long /* one of each scan ends beyond the other end of the street */ };
 
 /// Scans along a street, from west to east.
 class Street {
  public:
-  explicit Street(std::uint32_t seed = 8, Times times = Times::Known, double stops = 12)
+  explicit Street(std::uint32_t seed = 8, Times times = Times::Known, double stops = 12, Rays rays = Rays::Short)
       : campus_({.seed = seed, .stops = stops, .size_m = 25.0 * stops, .points_per_stop = 7000, .max_range_m = 16}) {
     const ScanSet all = scansOf(campus_.files());
     std::vector<std::size_t> order(all.size());
@@ -65,10 +66,22 @@ class Street {
     for (const std::size_t i : order) {
       manifests_.push_back(folder_.path() / ("scan" + std::to_string(manifests_.size()) + ".yaml"));
       std::ofstream text(manifests_.back());
-      text << "scans:\n  - {path: " << campus_.files()[i].string();
+      text << "scans:\n  - {path: " << (rays == Rays::Short ? campus_.files()[i] : withLongRay(i)).string();
       if (times == Times::Known) text << ", time_s: " << 1600000000 + 1000 * i;
       text << "}\n";
     }
+  }
+  /// A copy of the scan in which a ray passes along the street.
+  fs::path withLongRay(std::size_t scan) const {
+    const auto x_of = [&](std::size_t i) { return campus_.scans()[i].scan.T_map_sensor.translation().x(); };
+    double west = x_of(0), east = x_of(0);
+    for (std::size_t i = 1; i < campus_.scans().size(); ++i)
+      west = std::min(west, x_of(i)), east = std::max(east, x_of(i));
+    Eigen::Vector3d end = campus_.scans()[scan].scan.T_map_sensor.translation();
+    end.x() = 2 * end.x() < west + east ? east + 30 : west - 30;
+    const fs::path file = folder_.path() / campus_.files()[scan].filename();
+    writeScanFile(movedWithRay(campus_.scans()[scan].scan, Eigen::Vector3d::Zero(), end), file);
+    return file;
   }
   std::size_t size() const { return manifests_.size(); }
   ScanSet scans(std::size_t first, std::size_t end) const {
@@ -257,7 +270,7 @@ TEST(MergeOfStreets, OfAnyPartsIsTheBuildFromAllScans) {
   EXPECT_GT(taken, 0U);
 }
 
-TEST(MergeOfStreets, TellsWhatRaysOfTheOtherMapPass) {
+TEST(MergeOfStreets, TellsWhatRaysOfTheOtherMapPassBeyondTheWindow) {
   const FarRays rays;
   const fs::path west = rays.file("west.clx"), east = rays.file("east.clx"), merged = rays.file("merged.clx"),
                  whole = rays.file("whole.clx");
@@ -269,6 +282,17 @@ TEST(MergeOfStreets, TellsWhatRaysOfTheOtherMapPass) {
   EXPECT_LT(2 * report.tiles_decided, report.tiles) << "objects that rays pass lie in the window";
   EXPECT_TRUE(canonicalText(merged) == canonicalText(whole));
   EXPECT_TRUE(blocksOf(merged) == blocksOf(whole));
+}
+
+TEST(MergeOfStreets, TellsWhatRaysOfTheOtherMapPassWithinTheWindow) {
+  for (const std::uint32_t seed : {8U, 9U}) {
+    SCOPED_TRACE(seed);
+    const Street street(seed, Times::Known, 12, Rays::Long);
+    std::set<std::size_t> west, east;
+    for (std::size_t scan = 0; scan < street.size(); ++scan) (2 * scan < street.size() ? west : east).insert(scan);
+    std::mt19937 random(seed);
+    EXPECT_EQ(mergeAndCompare(street, {.parts = {west, east}}, random), 1U);
+  }
 }
 
 /// A wall on level ground, far from the street.

@@ -61,7 +61,7 @@ bool mayWriteMap(const fs::path& map) {
 BuildLock::BuildLock(const fs::path& map) : file_(buildLockOf(map)) {
   while (true) {
     const int descriptor = ::open(file_.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666);
-    if (descriptor < 0 && errno == ELOOP)
+    if (std::error_code ignored; descriptor < 0 && errno == ELOOP && fs::is_symlink(file_, ignored))
       refuse(map, "its lock " + file_.string() +
                       " is a symbolic link, and what it leads to would be overwritten; remove the link");
     if (descriptor < 0) refuse(map, std::string("no lock can be made beside it: ") + std::strerror(errno));

@@ -86,12 +86,14 @@ class Watch {
       const auto file = now.find(scans->file(i).path), earlier = before.find(scans->file(i).path);
       const bool is_still = file != now.end() && earlier != before.end() && earlier->second == file->second;
       if (is_still && !isDone(*file)) fresh.push_back(i);
-      if (is_still && isDone(*file) && hasOtherPose(scans->file(i))) reposed.push_back(i);
+      const bool is_refused = refused_.contains(scans->file(i).path);
+      if (is_still && isDone(*file) && (is_refused ? now != refused_in_ : hasOtherPose(scans->file(i))))
+        reposed.push_back(i);
     }
     // While the poses are being written, they may be those of other scans.
     const bool moved =
-        !reposed.empty() && poseFilesOf(*scans, before) == poseFilesOf(*scans, now) && move(*scans, reposed);
-    const bool added = !fresh.empty() && add(*scans, fresh);
+        !reposed.empty() && poseFilesOf(*scans, before) == poseFilesOf(*scans, now) && move(*scans, reposed, now);
+    const bool added = !fresh.empty() && add(*scans, fresh, &now);
     for (const std::size_t i : fresh) done_[scans->file(i).path] = now.at(scans->file(i).path);
     return added || moved;
   }
@@ -112,10 +114,11 @@ class Watch {
   }
 
   /// Moves those scans that the map has with other poses, as after a loop closure. False when there are none.
-  bool move(const scan::ScanSet& scans, const std::vector<std::size_t>& candidates) {
+  bool move(const scan::ScanSet& scans, const std::vector<std::size_t>& candidates, const FolderState& now) {
     extension_.close();
     std::map<scan::ScanId, ScanPose> poses;
-    std::map<scan::ScanId, std::size_t> ambiguous;  // one scan in two files with different poses
+    std::set<scan::ScanId> ambiguous;  // one scan in two files with different poses
+    for (const std::size_t i : candidates) refused_.erase(scans.file(i).path);
     {
       const auto environment = rdf::Environment::open(map_, rdf::OpenMode::ReadOnly);
       const rdf::ReadTransaction transaction = environment->read();
@@ -126,8 +129,9 @@ class Watch {
         if (!cloud) continue;
         const auto [known, is_new] = poses.emplace(*id, ScanPose{*id, file.T_map_sensor});
         const bool is_copy = hasOtherFile(scans, i, *id, *cloud);
-        if (is_copy || (!is_new && known->second.T_map_sensor.matrix() != file.T_map_sensor.matrix()))
-          ambiguous.emplace(*id, i);
+        if (!is_copy && (is_new || known->second.T_map_sensor.matrix() == file.T_map_sensor.matrix())) continue;
+        ambiguous.insert(*id);
+        refuse(file.path, *id, now);
       }
       std::erase_if(poses, [&](const auto& entry) {
         const Cloud cloud = storedCloud(transaction, entry.first).value();
@@ -135,12 +139,6 @@ class Watch {
                (cloud.has_pose && cloud.T_map_sensor.matrix() == entry.second.T_map_sensor.matrix());
       });
     }
-    for (const auto& [id, i] : ambiguous)
-      if (told_copies_.insert(id).second)
-        sink_.note(
-            scans.file(i).path.string() +
-            ": is the same scan as another file of the folder, with another pose; it stays where it is in the map "
-            "until one of the files is removed");
     notePlaces(scans.only(candidates));
     if (poses.empty()) return false;
     std::vector<ScanPose> moves;
@@ -152,10 +150,20 @@ class Watch {
     return true;
   }
 
+  /// The scan is looked at again when the folder has changed.
+  void refuse(const fs::path& file, const scan::ScanId& id, const FolderState& now) {
+    refused_.insert(file);
+    refused_in_ = now;
+    if (told_copies_.insert(id).second)
+      sink_.note(file.string() +
+                 ": is the same scan as another file of the folder, with another pose; it stays where it is in the map "
+                 "until one of the files is removed");
+  }
+
   /// Whether the cloud came from another file of the folder, which still holds the scan and gives it another pose.
   static bool hasOtherFile(const scan::ScanSet& scans, std::size_t i, const scan::ScanId& id, const Cloud& cloud) {
     for (std::size_t j = 0; j < scans.size(); ++j)
-      if (j != i && scans.file(j).path.filename() == fs::path(cloud.source).filename() &&
+      if (j != i && scans.file(j).has_pose && scans.file(j).path.filename() == fs::path(cloud.source).filename() &&
           scans.file(j).T_map_sensor.matrix() != scans.file(i).T_map_sensor.matrix() && idOf(scans, j) == id)
         return true;
     return false;
@@ -176,15 +184,15 @@ class Watch {
   }
 
   /// Adds scans in one commit, without those that cannot be read; or one by one, when they do not fit together. Scans
-  /// that an earlier watch added with other poses are moved.
-  bool add(const scan::ScanSet& scans, const std::vector<std::size_t>& fresh, bool may_move = true) {
+  /// that an earlier watch added with other poses are moved to those of the folder `now`, unless it is null.
+  bool add(const scan::ScanSet& scans, const std::vector<std::size_t>& fresh, const FolderState* now) {
     try {
       commit(scans.only(fresh));
       notePlaces(scans.only(fresh));
       return true;
     } catch (const InputError& fault) {
-      if (may_move && is_built_ && move(scans, fresh)) {
-        add(scans, fresh, false);
+      if (now != nullptr && is_built_ && move(scans, fresh, *now)) {
+        add(scans, fresh, nullptr);
         return true;
       }
       if (fresh.size() == 1) {
@@ -193,9 +201,9 @@ class Watch {
       }
     }
     const std::vector<std::size_t> readable = readableOf(scans, fresh);
-    if (readable.size() < fresh.size()) return !readable.empty() && add(scans, readable, may_move);
+    if (readable.size() < fresh.size()) return !readable.empty() && add(scans, readable, now);
     bool any = false;
-    for (const std::size_t i : fresh) any = add(scans, {i}, false) || any;
+    for (const std::size_t i : fresh) any = add(scans, {i}, nullptr) || any;
     return any;
   }
 
@@ -242,7 +250,9 @@ class Watch {
   std::map<fs::path, Eigen::Isometry3d> placed_;  ///< with which poses scans were added or moved
   FolderState done_;                              ///< scans that were added, or could not be read, as they were then
   std::string last_fault_;
-  bool is_built_ = false;  ///< nothing is left of a first build
+  bool is_built_ = false;       ///< nothing is left of a first build
+  std::set<fs::path> refused_;  ///< files of scans of which there are copies with other poses
+  FolderState refused_in_;      ///< the folder when they were looked at last
   std::set<scan::ScanId> told_copies_;
   std::size_t added_ = 0, moved_ = 0;
 };

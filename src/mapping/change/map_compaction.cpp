@@ -56,7 +56,7 @@ fs::path copyOf(const fs::path& map) {
 }
 
 void noteFailure(const fs::path& map, const std::exception& error, ProgressSink& sink) {
-  sink.note(map.string() + ": the change is written, but its free space stays in the file: " + error.what());
+  sink.note(map.string() + ": is whole, but its free space stays in the file: " + error.what());
 }
 
 }  // namespace
@@ -119,7 +119,14 @@ void compactIfSparse(const fs::path& map, const rdf::FreeSpace& space, ProgressS
 
 void finishCompaction(const fs::path& map, ProgressSink& sink) {
   std::error_code ignored;
-  if (fs::exists(copyOf(map), ignored)) compactIfSparse(map, sink, kMaxFreeShareOfChanged);
+  if (!fs::exists(copyOf(map), ignored)) return;
+  try {
+    const BuildLock nobody_compacts(withoutLinks(map));
+    removeCopy(copyOf(map));
+  } catch (const Error&) {
+    return;  // it is not left, but being made
+  }
+  compactIfSparse(map, sink, kMaxFreeShareOfChanged);
 }
 
 }  // namespace cluxel::mapping

@@ -32,7 +32,7 @@ void compactIfSparse(const std::filesystem::path& map, ProgressSink& sink, doubl
 void compactIfSparse(const std::filesystem::path& map, const rdf::FreeSpace& space, ProgressSink& sink,
                      double max_free_share);
 
-/// Compacts a map when a compaction was killed and has left its copy beside the map.
+/// Removes the copy that a killed compaction has left beside the map, and compacts the map if that is still worth it.
 void finishCompaction(const std::filesystem::path& map, ProgressSink& sink);
 
 }  // namespace cluxel::mapping

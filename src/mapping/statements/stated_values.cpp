@@ -113,6 +113,15 @@ void requireStatable(const Statement& statement, const rules::ClassCatalogue& cl
     throw Error(ErrorKind::InvalidArgument, "the value of <" + statement.property + "> is not UTF-8");
 }
 
+bool isStatableClass(const std::string& iri, const rules::ClassCatalogue& classes) {
+  try {
+    requireClass(iri, classes);
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
 bool isOfUnknownClass(const Statement& statement, const rules::ClassCatalogue& classes) {
   return (statement.kind == StatementKind::Is || statement.kind == StatementKind::IsNot) &&
          statement.value.kind == TermKind::Iri && classes.find(statement.value.text) == nullptr;

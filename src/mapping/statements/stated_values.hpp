@@ -18,6 +18,8 @@ void requireStatable(const std::string& property);
 /// Throws Error (NotFound) for a class that the ontology does not know.
 void requireStatable(const Statement& statement, const rules::ClassCatalogue& classes);
 
+/// Whether a thing can be stated to be of this class: the ontology knows it as a class of objects.
+bool isStatableClass(const std::string& iri, const rules::ClassCatalogue& classes);
 /// Whether the statement names a class that the ontology does not know. It is dormant until an ontology has the class.
 bool isOfUnknownClass(const Statement& statement, const rules::ClassCatalogue& classes);
 /// Tells that for people.

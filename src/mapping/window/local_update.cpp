@@ -265,7 +265,7 @@ class LocalUpdate {
     const RetiredThings retired = strip_ != nullptr ? strip_->retired : RetiredThings{};
     writeWindowFacts(transaction_, {parsed_, stages_, clouds_, strip_ != nullptr ? strip_->told_clouds : before_.clouds,
                                     decided, statements, retired, ways ? &*ways : nullptr, touched, params_.threads,
-                                    strip_ != nullptr ? strip_->later : nullptr});
+                                    strip_ != nullptr ? strip_->later : nullptr, lent_ != nullptr});
     writeLayers(transaction_, decided, changes_);
     if (strip_ != nullptr) eraseRetiredRecords(decision);
     statements.store(transaction_, window);

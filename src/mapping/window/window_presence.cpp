@@ -42,7 +42,7 @@ WindowPresence updatePresenceIn(rdf::WriteTransaction& transaction, const Window
     return result;
   }
   std::vector<rules::SemanticObject> asked = made;
-  if (!areSame(facts.clouds_before, seenClouds(facts.clouds))) {
+  if (facts.has_other_rays || !areSame(facts.clouds_before, seenClouds(facts.clouds))) {
     const auto kept = keptObjects(transaction, facts.decided.window, facts.decided.decision, facts.decided.former);
     asked.insert(asked.end(), kept.begin(), kept.end());
   }

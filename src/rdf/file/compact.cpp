@@ -191,9 +191,13 @@ void copyEntries(const ReadTransaction& from, const fs::path& target) {
 
 }  // namespace
 
+void LmdbEnvironment::checkPages(const ReadTransaction::Impl& snapshot) const {
+  checkMapStructure(data_lock_, file_, mdb_txn_id(snapshot.live()), MapScope::Whole);
+}
+
 void LmdbEnvironment::compactTo(const fs::path& target, CopiedPages pages) const {
   const ReadTransaction snapshot = read();
-  checkMapStructure(data_lock_, file_, mdb_txn_id(snapshot.impl().live()), MapScope::Whole);
+  checkPages(snapshot.impl());
   snapshotOf(snapshot.impl()).verify(snapshot.impl());
   const bool is_copied = pages == CopiedPages::AsTheyAre && !fs::exists(target) && copyAsItIs(snapshot, target);
   if (!is_copied) copyEntries(snapshot, target);

@@ -135,6 +135,8 @@ FreeSpace freeSpaceOf(const ReadTransaction& transaction) {
 }
 
 std::vector<LayerSize> layerSizes(const ReadTransaction& transaction) {
+  const ReadTransaction::Impl& state = transaction.impl();
+  state.environment->checkPages(state);  // LMDB trusts what it walks, and no query reads these pages
   return LayerCount(transaction).run();
 }
 

@@ -56,6 +56,8 @@ class LmdbEnvironment final : public Environment {
   WriteTransaction write() override;
   const std::filesystem::path& file() const override { return file_; }
   void compactTo(const std::filesystem::path& target, CopiedPages pages) const override;
+  /// Checks all pages of the snapshot's commit. Throws Error (StoreUnavailable) for damaged ones.
+  void checkPages(const ReadTransaction::Impl& snapshot) const;
 
   std::uint64_t fileSize() const;  ///< at this moment
   MDB_env* handle() const { return handle_.get(); }

@@ -37,8 +37,7 @@ std::string explain(int code, std::string_view doing) {
     case EDQUOT:
       return attempt +
              "no space is left on the disk, the file may not become larger (ulimit -f), or the disk fails; the map "
-             "keeps "
-             "its last commit: free some space and run again";
+             "keeps its last commit: free some space and run again";
     case EACCES:
     case EPERM:
     case EROFS:

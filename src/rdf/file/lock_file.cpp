@@ -67,7 +67,7 @@ LockFile prepareLockFile(const fs::path& map, int descriptor, bool can_write) {
 
 void failLockFile(const fs::path& map, const LockFile& lock) {
   const fs::path file = lockFileOf(map);
-  if (lock.reason == ELOOP)
+  if (std::error_code ignored; lock.reason == ELOOP && fs::is_symlink(file, ignored))
     throw Error(ErrorKind::StoreUnavailable,
                 map.string() + ": its lock file " + file.string() +
                     " is a symbolic link, and what it leads to would be overwritten; remove the link");

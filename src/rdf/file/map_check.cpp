@@ -24,6 +24,22 @@ namespace {
 
 constexpr std::size_t kMaxFaults = 40;
 
+void checkStructure(const std::filesystem::path& file) {
+  const Descriptor descriptor(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
+  if (descriptor.get() < 0) failStore(file, errno, "open the map");
+  constexpr int kAttempts = 5;
+  for (int attempt = 1;; ++attempt) {
+    const MapFileHead head = readMapFileHead(descriptor.get(), file);
+    try {
+      if (head.file_size > 0) checkMapStructure(descriptor.get(), file, head.transaction, MapScope::Whole);
+      return;
+    } catch (const Error&) {
+      // No reader pins the pages: a writer may have reused them meanwhile.
+      if (attempt == kAttempts || readMapFileHead(descriptor.get(), file).transaction == head.transaction) throw;
+    }
+  }
+}
+
 /// A 64-bit hash of a quad. The sum over an index is independent of its order and identifies the set of quads.
 std::uint64_t mixed(const QuadIds& quad) {
   std::uint64_t high = (std::uint64_t{quad.s} << 32U | quad.p) * 0x9E3779B97F4A7C15U;
@@ -155,25 +171,9 @@ class Check {
 
 }  // namespace
 
-void requireSoundPages(const std::filesystem::path& file) {
-  const Descriptor descriptor(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
-  if (descriptor.get() < 0) failStore(file, errno, "open the map");
-  constexpr int kAttempts = 5;
-  for (int attempt = 1;; ++attempt) {
-    const MapFileHead head = readMapFileHead(descriptor.get(), file);
-    try {
-      if (head.file_size > 0) checkMapStructure(descriptor.get(), file, head.transaction, MapScope::Whole);
-      return;
-    } catch (const Error&) {
-      // No reader pins the pages: a writer may have reused them meanwhile.
-      if (attempt == kAttempts || readMapFileHead(descriptor.get(), file).transaction == head.transaction) throw;
-    }
-  }
-}
-
 MapCheck checkMap(const std::filesystem::path& file) {
   try {
-    requireSoundPages(file);
+    checkStructure(file);
   } catch (const Error& error) {
     if (std::error_code ignored; !std::filesystem::is_regular_file(file, ignored)) throw;
     MapCheck broken;

@@ -32,7 +32,4 @@ bool looksLikeMap(const std::filesystem::path& file);
 /// Cost: two page reads.
 bool hasNoCommit(const std::filesystem::path& file);
 
-/// The check of all pages alone. Throws Error (StoreUnavailable) when LMDB could not read them.
-void requireSoundPages(const std::filesystem::path& file);
-
 }  // namespace cluxel::rdf
