@@ -6,6 +6,8 @@
 #include <map>
 #include <set>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "cluxel/error.hpp"
 #include "mapping/build/work_file.hpp"
@@ -118,6 +120,7 @@ class Watch {
     extension_.close();
     std::map<scan::ScanId, ScanPose> poses;
     std::set<scan::ScanId> ambiguous;  // one scan in two files with different poses
+    std::vector<std::pair<fs::path, scan::ScanId>> known_files;
     for (const std::size_t i : candidates) refused_.erase(scans.file(i).path);
     {
       const auto environment = rdf::Environment::open(map_, rdf::OpenMode::ReadOnly);
@@ -127,12 +130,14 @@ class Watch {
         const std::optional<scan::ScanId> id = file.has_pose ? idOf(scans, i) : std::nullopt;
         const std::optional<Cloud> cloud = id ? storedCloud(transaction, *id) : std::nullopt;
         if (!cloud) continue;
+        known_files.emplace_back(file.path, *id);
         const auto [known, is_new] = poses.emplace(*id, ScanPose{*id, file.T_map_sensor});
         const bool is_copy = hasOtherFile(scans, i, *id, *cloud);
-        if (!is_copy && (is_new || known->second.T_map_sensor.matrix() == file.T_map_sensor.matrix())) continue;
-        ambiguous.insert(*id);
-        refuse(file.path, *id, now);
+        if (is_copy || (!is_new && known->second.T_map_sensor.matrix() != file.T_map_sensor.matrix()))
+          ambiguous.insert(*id);
       }
+      for (const auto& [file, id] : known_files)
+        if (ambiguous.contains(id)) refuse(file, id, now);
       std::erase_if(poses, [&](const auto& entry) {
         const Cloud cloud = storedCloud(transaction, entry.first).value();
         return ambiguous.contains(entry.first) ||
