@@ -6,7 +6,6 @@
 #include <map>
 #include <set>
 #include <thread>
-#include <utility>
 #include <vector>
 
 #include "cluxel/error.hpp"
@@ -118,41 +117,50 @@ class Watch {
   /// Moves those scans that the map has with other poses, as after a loop closure. False when there are none.
   bool move(const scan::ScanSet& scans, const std::vector<std::size_t>& candidates, const FolderState& now) {
     extension_.close();
-    std::map<scan::ScanId, ScanPose> poses;
-    std::set<scan::ScanId> ambiguous;  // one scan in two files with different poses
-    std::vector<std::pair<fs::path, scan::ScanId>> known_files;
-    for (const std::size_t i : candidates) refused_.erase(scans.file(i).path);
-    {
-      const auto environment = rdf::Environment::open(map_, rdf::OpenMode::ReadOnly);
-      const rdf::ReadTransaction transaction = environment->read();
-      for (const std::size_t i : candidates) {
-        const scan::ScanFile& file = scans.file(i);
-        const std::optional<scan::ScanId> id = file.has_pose ? idOf(scans, i) : std::nullopt;
-        const std::optional<Cloud> cloud = id ? storedCloud(transaction, *id) : std::nullopt;
-        if (!cloud) continue;
-        known_files.emplace_back(file.path, *id);
-        const auto [known, is_new] = poses.emplace(*id, ScanPose{*id, file.T_map_sensor});
-        const bool is_copy = hasOtherFile(scans, i, *id, *cloud);
-        if (is_copy || (!is_new && known->second.T_map_sensor.matrix() != file.T_map_sensor.matrix()))
-          ambiguous.insert(*id);
-      }
-      for (const auto& [file, id] : known_files)
-        if (ambiguous.contains(id)) refuse(file, id, now);
-      std::erase_if(poses, [&](const auto& entry) {
-        const Cloud cloud = storedCloud(transaction, entry.first).value();
-        return ambiguous.contains(entry.first) ||
-               (cloud.has_pose && cloud.T_map_sensor.matrix() == entry.second.T_map_sensor.matrix());
-      });
-    }
+    const std::vector<ScanPose> moves = otherPosesOf(scans, candidates, now);
     notePlaces(scans.only(candidates));
-    if (poses.empty()) return false;
-    std::vector<ScanPose> moves;
-    for (const auto& [id, pose] : poses) moves.push_back(pose);
+    if (moves.empty()) return false;
     const ChangeReport report = moveScans(map_, moves, {.threads = params_.threads}, sink_);
     sink_.note("scans moved to the poses that the folder has now: " + std::to_string(moves.size()));
     moved_ += moves.size();
     tell(0, report.scans, report.object_count);
     return true;
+  }
+
+  /// The poses of those scans that the map has with other ones. A scan in two files with different poses is refused.
+  std::vector<ScanPose> otherPosesOf(const scan::ScanSet& scans, const std::vector<std::size_t>& candidates,
+                                     const FolderState& now) {
+    struct KnownScan {
+      Cloud cloud;
+      std::vector<std::size_t> files;
+      bool has_copy = false;
+    };
+    std::map<scan::ScanId, KnownScan> known;
+    const auto environment = rdf::Environment::open(map_, rdf::OpenMode::ReadOnly);
+    const rdf::ReadTransaction transaction = environment->read();
+    for (const std::size_t i : candidates) {
+      refused_.erase(scans.file(i).path);
+      const std::optional<scan::ScanId> id = scans.file(i).has_pose ? idOf(scans, i) : std::nullopt;
+      const std::optional<Cloud> cloud = id ? storedCloud(transaction, *id) : std::nullopt;
+      if (!cloud) continue;
+      KnownScan& scan = known.try_emplace(*id, KnownScan{*cloud, {}}).first->second;
+      scan.has_copy = scan.has_copy || hasOtherFile(scans, i, *id, *cloud) ||
+                      (!scan.files.empty() && !haveSamePose(scans.file(scan.files.front()), scans.file(i)));
+      scan.files.push_back(i);
+    }
+    std::vector<ScanPose> others;
+    for (const auto& [id, scan] : known) {
+      const Eigen::Isometry3d& pose = scans.file(scan.files.front()).T_map_sensor;
+      if (scan.has_copy)
+        for (const std::size_t i : scan.files) refuse(scans.file(i).path, id, now);
+      else if (!scan.cloud.has_pose || scan.cloud.T_map_sensor.matrix() != pose.matrix())
+        others.push_back({id, pose});
+    }
+    return others;
+  }
+
+  static bool haveSamePose(const scan::ScanFile& a, const scan::ScanFile& b) {
+    return a.T_map_sensor.matrix() == b.T_map_sensor.matrix();
   }
 
   /// The scan is looked at again when the folder has changed.
@@ -169,7 +177,7 @@ class Watch {
   static bool hasOtherFile(const scan::ScanSet& scans, std::size_t i, const scan::ScanId& id, const Cloud& cloud) {
     for (std::size_t j = 0; j < scans.size(); ++j)
       if (j != i && scans.file(j).has_pose && scans.file(j).path.filename() == fs::path(cloud.source).filename() &&
-          scans.file(j).T_map_sensor.matrix() != scans.file(i).T_map_sensor.matrix() && idOf(scans, j) == id)
+          !haveSamePose(scans.file(j), scans.file(i)) && idOf(scans, j) == id)
         return true;
     return false;
   }
@@ -255,10 +263,10 @@ class Watch {
   std::map<fs::path, Eigen::Isometry3d> placed_;  ///< with which poses scans were added or moved
   FolderState done_;                              ///< scans that were added, or could not be read, as they were then
   std::string last_fault_;
-  bool is_built_ = false;       ///< nothing is left of a first build
-  std::set<fs::path> refused_;  ///< files of scans of which there are copies with other poses
-  FolderState refused_in_;      ///< the folder when they were looked at last
-  std::set<scan::ScanId> told_copies_;
+  bool is_built_ = false;               ///< nothing is left of a first build
+  std::set<fs::path> refused_;          ///< files of scans of which there are copies with other poses
+  FolderState refused_in_;              ///< the folder when they were looked at last
+  std::set<scan::ScanId> told_copies_;  ///< refused with a note
   std::size_t added_ = 0, moved_ = 0;
 };
 

@@ -56,7 +56,7 @@ fs::path copyOf(const fs::path& map) {
 }
 
 void noteFailure(const fs::path& map, const std::exception& error, ProgressSink& sink) {
-  sink.note(map.string() + ": is whole, but its free space stays in the file: " + error.what());
+  sink.note(map.string() + ": the map is sound, but its free space stays in the file: " + error.what());
 }
 
 }  // namespace

@@ -45,10 +45,7 @@ bool takeNewStatements(rdf::WriteTransaction& transaction, const rules::ClassCat
   const NewStatements news = newStatements(transaction);
   std::vector<ContentHash> made;
   for (const Statement& statement : news.made) {
-    if (isOfUnknownClass(statement, classes))  // such as one of a map that had another ontology then
-      sink.note(noteOfUnknownClass(statement));
-    else
-      requireStatable(statement, classes);
+    requireStatableOrDormant(statement, classes, sink);
     requireNoWholeClass(transaction, statement);
     made.push_back(statement.id());
   }
