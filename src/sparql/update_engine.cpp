@@ -251,8 +251,7 @@ void UpdateRun::checkRemovable(const rdf::QuadReader& reader, const std::vector<
        "GRAPH <" +
            std::string(rdf::vocabulary::kGraphOperator) +
            "> { ... } in the template or WITH before it. What follows from an operator statement goes when the "
-           "statement "
-           "is withdrawn");
+           "statement is withdrawn");
 }
 
 void UpdateRun::apply(const rdf::QuadReader& reader, const Changes& changes) {

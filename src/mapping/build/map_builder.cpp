@@ -219,10 +219,7 @@ BuildReport built(const scan::ScanSet& scans, const MapInputs& inputs, const fs:
   // A faulty statement is refused before anything is written.
   for (const Statement& statement : statementsAmong(params.statements)) {
     try {
-      if (isOfUnknownClass(statement, parsed.rules.catalogue))
-        sink.note(noteOfUnknownClass(statement));
-      else
-        requireStatable(statement, parsed.rules.catalogue);
+      requireStatableOrDormant(statement, parsed.rules.catalogue, sink);
     } catch (const Error& fault) {
       throw Error(ErrorKind::FaultyInput, "operator statement " + statement.id().hex() + ": " + fault.what());
     }
@@ -231,8 +228,8 @@ BuildReport built(const scan::ScanSet& scans, const MapInputs& inputs, const fs:
                                            [](const Quad& quad) { return namesObject(quad.subject); });
   if (about_objects > 0)
     sink.note(std::to_string(about_objects) +
-              " statements name objects and change none in a build: objects are known in a map only; load the file "
-              "into the finished map instead");
+              " quads are about objects by their names, which only a map knows: they change no object in a build; load "
+              "the file into the finished map instead");
   WorkFile work(file, complete.hash().hex(), params.force);
   if (!params.refine_poses) noteDoubtfulPoses(scans, params.threads, sink);
   const scan::ScanSet posed = params.refine_poses ? withRefinedPoses(scans, params.threads, sink) : scans;

@@ -6,7 +6,6 @@
 #include <array>
 
 #include "mapping/facts/object_geometry.hpp"
-#include "mapping/statements/stated_values.hpp"
 #include "mapping/statements/statement_places.hpp"
 #include "rules/objects/finished_objects.hpp"
 
@@ -106,7 +105,7 @@ class Application {
     StatementOutcome& outcome = result_.outcomes[number];
     const Statement& statement = outcome.statement;
     if (statement.kind == StatementKind::IgnoreRegion) return;
-    if (statement.kind == StatementKind::Is && !isStatableClass(statement.value.text, classes_)) return;
+    if (statement.kind == StatementKind::Is && classes_.find(statement.value.text) == nullptr) return;
     owner_of_[number] = ownerOf(statement.points);
     const std::uint32_t object = owner_of_[number].object;
     if (object == kNoObject) return;

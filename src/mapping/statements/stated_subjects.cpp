@@ -86,8 +86,8 @@ void anchorStatedObjects(rdf::WriteTransaction& transaction, const ParsedInputs&
     if (statement.kind == StatementKind::Is && objects.isOfWholeClass(quad.subject.text))
       throw Error(ErrorKind::InvalidArgument,
                   "<" + quad.subject.text +
-                      "> is one object over all of the map: its class cannot be stated, which would "
-                      "change all of it; other properties can");
+                      "> is one object over all of the map: another class would change all of it; state other "
+                      "properties");
     writer.remove(rdf::QuadIds{writer.intern(quad.subject), writer.intern(quad.predicate), writer.intern(quad.object),
                                writer.intern(quad.graph)});
     for (const Quad& stated : quadsOf(statement)) writer.add(stated);

@@ -113,23 +113,12 @@ void requireStatable(const Statement& statement, const rules::ClassCatalogue& cl
     throw Error(ErrorKind::InvalidArgument, "the value of <" + statement.property + "> is not UTF-8");
 }
 
-bool isStatableClass(const std::string& iri, const rules::ClassCatalogue& classes) {
-  try {
-    requireClass(iri, classes);
-    return true;
-  } catch (const Error&) {
-    return false;
-  }
-}
-
-bool isOfUnknownClass(const Statement& statement, const rules::ClassCatalogue& classes) {
-  return (statement.kind == StatementKind::Is || statement.kind == StatementKind::IsNot) &&
-         statement.value.kind == TermKind::Iri && classes.find(statement.value.text) == nullptr;
-}
-
-std::string noteOfUnknownClass(const Statement& statement) {
-  return "the statement " + statement.id().hex() + " is dormant: the map's ontology knows no class <" +
-         statement.value.text + ">";
+void requireStatableOrDormant(const Statement& statement, const rules::ClassCatalogue& classes, ProgressSink& sink) {
+  const bool names_class = (statement.kind == StatementKind::Is || statement.kind == StatementKind::IsNot) &&
+                           statement.value.kind == TermKind::Iri;
+  if (!names_class || classes.find(statement.value.text) != nullptr) return requireStatable(statement, classes);
+  sink.note("the statement " + statement.id().hex() + " has no effect: the map's ontology knows no class <" +
+            statement.value.text + ">");
 }
 
 void requireNoWholeClass(const rdf::ReadTransaction& transaction, const Statement& statement) {

@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "cluxel/progress.hpp"
 #include "mapping/statements/statement.hpp"
 #include "rdf/file/environment.hpp"
 #include "rules/language/class_catalogue.hpp"
@@ -18,12 +19,9 @@ void requireStatable(const std::string& property);
 /// Throws Error (NotFound) for a class that the ontology does not know.
 void requireStatable(const Statement& statement, const rules::ClassCatalogue& classes);
 
-/// Whether a thing can be stated to be of this class: the ontology knows it as a class of objects.
-bool isStatableClass(const std::string& iri, const rules::ClassCatalogue& classes);
-/// Whether the statement names a class that the ontology does not know. It is dormant until an ontology has the class.
-bool isOfUnknownClass(const Statement& statement, const rules::ClassCatalogue& classes);
-/// Tells that for people.
-std::string noteOfUnknownClass(const Statement& statement);
+/// As requireStatable(), but a statement of a class that the ontology does not know is noted and kept: such as one of a
+/// map that had another ontology. It has no effect until an ontology knows the class.
+void requireStatableOrDormant(const Statement& statement, const rules::ClassCatalogue& classes, ProgressSink& sink);
 
 /// Throws Error (InvalidArgument) for the statement that something is of a class of which the map has one object over
 /// all of it, as the ground.
