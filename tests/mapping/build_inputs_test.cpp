@@ -2,12 +2,12 @@
 // What a map takes of its inputs, and what its history and its readers tell.
 #include <gtest/gtest.h>
 
-#include <cmath>
+#include <atomic>
 #include <limits>
+#include <thread>
 
 #include "base/file_bytes.hpp"
 #include "cluxel/error.hpp"
-#include "mapping/change/map_update.hpp"
 #include "mapping/clouds/scan_store.hpp"
 #include "mapping/facts/map_history.hpp"
 #include "mapping/map_state.hpp"
@@ -16,11 +16,7 @@
 namespace cluxel::mapping {
 
 using namespace scan;
-using namespace perception;
-using namespace simulation;
 using namespace rdf;
-using namespace sparql;
-using namespace rules;
 namespace {
 
 namespace fs = std::filesystem;

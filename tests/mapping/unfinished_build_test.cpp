@@ -7,16 +7,12 @@
 #include <unistd.h>
 
 #include <atomic>
-#include <cmath>
 #include <functional>
-#include <limits>
 #include <thread>
 
 #include "base/file_bytes.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/change/map_update.hpp"
-#include "mapping/clouds/scan_store.hpp"
-#include "mapping/facts/map_history.hpp"
 #include "mapping/map_state.hpp"
 #include "mapping/small_campus.hpp"
 #include "rdf/file/map_check.hpp"

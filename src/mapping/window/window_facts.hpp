@@ -37,7 +37,7 @@ struct WindowFacts {
   const std::set<std::string>& more_patches;  ///< of the ground (IRIs) that nothing may touch any more
   unsigned threads = 1;
   LaterTargets* later = nullptr;  ///< gets the objects that were made, if rays are not to be looked at yet
-  bool has_other_rays = false;    ///< rays of other clouds may pass objects that stay, though `clouds_before` has them
+  bool has_other_rays = false;    ///< rays of another map pass objects that stay, though `clouds_before` has its clouds
 };
 
 /// Makes graph observed, and what is kept about presence and class-wide objects, what a computation over the whole map
