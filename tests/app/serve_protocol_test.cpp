@@ -114,6 +114,9 @@ TEST_F(ServeCommand, FaultyRequestsGetTheirStatusAndAMessage) {
   expect(shared().get("/nothing"), 404, "/ lists");
   expect(shared().get("/maps/mup/sparql"), 404, "did you mean 'map'");
   expect(shared().get("/sparql?query=ASK%7B%7D&x=" + std::string(9000, 'x')), 414, "POST");
+  expect(shared().get("/sparql?query=ASK%7B%7D&x=" + std::string(200'000, 'x')), 414, "POST");
+  const std::string declared = "POST /sparql HTTP/1.1\r\nHost: localhost\r\nContent-Length: 99999999999\r\n";
+  expect(replyOf(shared().exchange(declared + "Content-Type: application/sparql-query\r\n\r\n")), 413, "too large");
   expect(replyOf(shared().exchange("GET / HTTP/1.1\r\nHost: rebound.example\r\nConnection: close\r\n\r\n")), 421,
          "rebound.example");
   expect(shared().get("/questions/tree"), 404, "did you mean 'trees'");

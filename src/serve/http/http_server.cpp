@@ -68,9 +68,14 @@ int statusOf(int status, HttpStream::Fault fault) {
   return fault == HttpStream::Fault::TooSlow ? 408 : status;
 }
 
-constexpr const char* kTooManyConnections =
-    "HTTP/1.1 503 Service Unavailable\r\nRetry-After: 1\r\nConnection: close\r\nContent-Type: text/plain; "
-    "charset=utf-8\r\nContent-Length: 52\r\n\r\nthe server has too many connections; ask again soon\n";
+/// What is sent without cpp-httplib: it has read no request line.
+void writeRefusal(HttpStream& stream, const std::string& status, const std::string& message) {
+  const std::string response =
+      "HTTP/1.1 " + status + "\r\nConnection: close\r\nContent-Type: text/plain; charset=utf-8" +
+      "\r\nContent-Length: " + std::to_string(message.size() + 1) + "\r\n\r\n" + message + "\n";
+  stream.closeAfterResponse();
+  stream.write(response.data(), response.size());
+}
 
 }  // namespace
 
@@ -106,10 +111,13 @@ struct HttpServer::Impl : httplib::Server {
   }
 
   HandlerResponse answerWithoutBody(const httplib::Request& in, httplib::Response& out) {
-    if (in.method == "POST" && !in.is_multipart_form_data() && !in.has_header("Content-Encoding"))
+    const bool is_too_large = in.get_header_value<uint64_t>("Content-Length") > options.max_body_bytes;
+    if (in.method == "POST" && !in.is_multipart_form_data() && !in.has_header("Content-Encoding") && !is_too_large)
       return HandlerResponse::Unhandled;
     if (hasBody(in)) endAfter(out);
-    if (in.method == "POST")
+    if (is_too_large)
+      fill(out, textResponse(413, messageOf(413, HttpStream::Fault::None)));
+    else if (in.method == "POST")
       fill(out, textResponse(415, "a form of several parts or a compressed body is not taken; send the text as it is"));
     else
       fill(out, handler(requestOf(in, {})));
@@ -152,8 +160,8 @@ struct HttpServer::Impl : httplib::Server {
     HttpStream stream(sock, stop_event, options);
     current_stream = &stream;
     if (HttpThreads::isRefused()) {
-      stream.closeAfterResponse();
-      stream.write(kTooManyConnections, std::char_traits<char>::length(kTooManyConnections));
+      writeRefusal(stream, "503 Service Unavailable\r\nRetry-After: 1",
+                   "the server has too many connections; ask again soon");
     } else {
       serveRequests(stream);
     }
@@ -171,8 +179,18 @@ struct HttpServer::Impl : httplib::Server {
         stream.beginBody();
       };
       const bool is_answered = process_request(stream, is_last, is_closed, begin_body);
+      if (stream.hasOverlongRequestLine()) refuseUrl(stream);
       if (!is_answered || is_closed || is_last || stream.mustClose()) return;
     }
+  }
+
+  void refuseUrl(HttpStream& stream) const {
+    writeRefusal(stream, "414 URI Too Long", messageOf(414, HttpStream::Fault::None));
+    httplib::Request unread;
+    unread.method = unread.target = "-";
+    httplib::Response sent;
+    sent.status = 414;
+    record(unread, sent);
   }
 
   /// cpp-httplib's stop() may be called once, and only while it listens.

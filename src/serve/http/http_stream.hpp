@@ -28,6 +28,8 @@ class HttpStream : public httplib::Stream {
   void closeAfterResponse() { must_close_ = true; }
   bool mustClose() const { return must_close_; }
   Fault fault() const { return fault_; }
+  /// cpp-httplib has read no request line then, and sends no response.
+  bool hasOverlongRequestLine() const { return fault_ == Fault::HeaderTooLarge && is_request_line_; }
   double secondsSinceBegin() const { return std::chrono::duration<double>(Clock::now() - begun_).count(); }
   /// Closes the connection such that the client can still read the response.
   void close();
