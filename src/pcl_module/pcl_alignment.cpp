@@ -59,22 +59,25 @@ struct GicpCloud {
 
 /// PCL's own search starts a team of OpenMP for each query, which takes longer than the query; FLANN answers all of
 /// them in one.
-std::vector<SurfacePlane> planesOf(const std::vector<Eigen::Vector3f>& points) {
+std::vector<SurfacePlane> planesAt(const std::vector<Eigen::Vector3f>& points, const std::vector<std::size_t>& chosen) {
   constexpr int kLeafSize = 15;
-  if (points.empty()) return {};
+  if (chosen.empty()) return {};
   const std::size_t count = std::min<std::size_t>(kNeighbours, points.size());
   std::vector<Eigen::Vector3f> searched = points;  // FLANN takes no constant points
   const flann::Matrix<float> rows(searched.front().data(), searched.size(), 3);
   flann::KDTreeSingleIndex<flann::L2_Simple<float>> tree(rows, flann::KDTreeSingleIndexParams(kLeafSize));
   tree.buildIndex();
-  std::vector<std::size_t> indices(points.size() * count);
+  std::vector<Eigen::Vector3f> asked;
+  for (const std::size_t i : chosen) asked.push_back(points[i]);
+  const flann::Matrix<float> queries(asked.front().data(), asked.size(), 3);
+  std::vector<std::size_t> indices(asked.size() * count);
   std::vector<float> squared(indices.size());
-  flann::Matrix<std::size_t> found(indices.data(), points.size(), count);
-  flann::Matrix<float> distances(squared.data(), points.size(), count);
-  tree.knnSearch(rows, found, distances, count, flann::SearchParams(flann::FLANN_CHECKS_UNLIMITED));
+  flann::Matrix<std::size_t> found(indices.data(), asked.size(), count);
+  flann::Matrix<float> distances(squared.data(), asked.size(), count);
+  tree.knnSearch(queries, found, distances, count, flann::SearchParams(flann::FLANN_CHECKS_UNLIMITED));
   std::vector<SurfacePlane> planes;
-  planes.reserve(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i)
+  planes.reserve(asked.size());
+  for (std::size_t i = 0; i < asked.size(); ++i)
     planes.push_back(planeThrough(points, std::span(indices).subspan(i * count, count)));
   return planes;
 }

@@ -10,7 +10,7 @@
 
 namespace cluxel::scan {
 
-std::vector<SurfacePlane> planesOf(const std::vector<Eigen::Vector3f>& points);
+std::vector<SurfacePlane> planesAt(const std::vector<Eigen::Vector3f>& points, const std::vector<std::size_t>& chosen);
 
 std::optional<Eigen::Isometry3d> alignedByGicp(const SurfaceCloud& target, const SurfaceCloud& source,
                                                const Eigen::Isometry3d& T_target_source, double reach_m);

@@ -25,8 +25,9 @@ class LinkedPcl final : public PclFunctions {
                       const Eigen::Isometry3d& T_map_sensor) const override {
     return cluxel::scan::pcdFile(records, fields, count, T_map_sensor);
   }
-  std::vector<SurfacePlane> planesOf(const std::vector<Eigen::Vector3f>& points) const override {
-    return cluxel::scan::planesOf(points);
+  std::vector<SurfacePlane> planesAt(const std::vector<Eigen::Vector3f>& points,
+                                     const std::vector<std::size_t>& chosen) const override {
+    return cluxel::scan::planesAt(points, chosen);
   }
   std::optional<Eigen::Isometry3d> alignedByGicp(const SurfaceCloud& target, const SurfaceCloud& source,
                                                  const Eigen::Isometry3d& T_target_source,

@@ -63,6 +63,21 @@ TEST(PoseRegistration, ChangesAllPosesAsAWholeAsLittleAsItCan) {
   EXPECT_NEAR((poses[1].translation() - given[1].translation()).norm(), 0.10, 0.01) << "two thirds of what was wrong";
 }
 
+TEST(PoseRegistration, SomePointsMeasureWhatAllDo) {
+  const ScratchFolder folder;
+  NoteKeeper notes;
+  const Poses truth = straightDrive(4);
+  const Drive drive = writeDrive(folder, yardPlace(), truth, drifting(truth, moveBy({0.10, 0.03, 0.02}, {0, 0, 0})));
+  const ScanSet set = ScanSet::open(drive.files, {}, notes);
+  const PoseRegistration all = measurePoses(set, {}, 1, notes);
+  const PoseRegistration some = measurePoses(set, {.max_compared = 3000}, 2, notes);
+  EXPECT_GT(all.residual_before_m, 0.05);
+  EXPECT_NE(some.residual_before_m, all.residual_before_m) << "all points were compared";
+  EXPECT_NEAR(some.residual_before_m, all.residual_before_m, 0.01);
+  ASSERT_EQ(some.pairs.size(), all.pairs.size());
+  for (std::size_t i = 0; i < all.pairs.size(); ++i) EXPECT_NEAR(some.pairs[i].overlap, all.pairs[i].overlap, 0.1) << i;
+}
+
 TEST(PoseRegistration, ASampleIsOfNearScansSpreadOverTheSet) {
   const ScratchFolder folder;
   NoteKeeper notes;

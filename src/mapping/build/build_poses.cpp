@@ -25,12 +25,15 @@ scan::ScanSet withRefinedPoses(const scan::ScanSet& scans, unsigned threads, Pro
   return scans.posed(refined.poses());
 }
 
+/// Points of a scan: enough for a median, and planes of all take as long as a tenth of a small build.
+constexpr std::size_t kCompared = 6000;
+
 void noteDoubtfulPoses(const scan::ScanSet& scans, unsigned threads, ProgressSink& sink) {
   const std::vector<scan::PosedScan> sample = sampledNeighbours(scans);
   if (sample.empty()) return;
   double residual_m = 0;
   try {
-    residual_m = measurePoses(scans.posed(sample), {}, threads, sink).residual_before_m;
+    residual_m = measurePoses(scans.posed(sample), {.max_compared = kCompared}, threads, sink).residual_before_m;
   } catch (const Error&) {
     return;
   }

@@ -39,8 +39,9 @@ class PclFunctions {
   virtual std::string pcdFile(std::string_view records, const std::vector<PointField>& fields, std::size_t count,
                               const Eigen::Isometry3d& T_map_sensor) const = 0;
 
-  /// For each point the plane through its 20 nearest ones.
-  virtual std::vector<SurfacePlane> planesOf(const std::vector<Eigen::Vector3f>& points) const = 0;
+  /// For each of the points `chosen` the plane through its 20 nearest ones.
+  virtual std::vector<SurfacePlane> planesAt(const std::vector<Eigen::Vector3f>& points,
+                                             const std::vector<std::size_t>& chosen) const = 0;
 
   /// Where generalised ICP (Segal, Haehnel, Thrun 2009, as PCL has it) moves `source`, from a first guess; absent when
   /// it fails. It may end on its last iteration, a hair from rest: whether to believe it is for evidenceOf to say.

@@ -25,23 +25,25 @@ struct Matches {
 
 constexpr double kMinFacing = 0.7;  // of two normals: further apart they are of different surfaces
 
-/// Matches of the points of `from` with planes of `to`; `normal` and `gap_m` in the frame of `from`.
+/// Matches of the points of `from` with planes of `to`, where both have one; `normal` and `gap_m` in the frame of
+/// `from`.
 Matches matchesOf(const SurfaceCloud& to, const SurfaceCloud& from, const Eigen::Isometry3d& T_to_from,
                   double reach_m) {
   Matches matches;
   std::size_t near = 0;
-  for (std::size_t i = 0; i < from.size(); ++i) {
+  for (const std::size_t i : from.withPlane()) {
     const Eigen::Vector3d p = T_to_from * from.point(i);
     const auto j = to.nearest(p, SurfaceCloud::kMaxReach_m);
     if (!j) continue;
     ++near;
-    if ((p - to.point(*j)).squaredNorm() > reach_m * reach_m) continue;
+    if (!to.hasPlane(*j) || (p - to.point(*j)).squaredNorm() > reach_m * reach_m) continue;
     const Eigen::Vector3d normal = T_to_from.linear().transpose() * to.normal(*j);
     if (std::abs(normal.dot(from.normal(i))) < kMinFacing) continue;
     const double gap_m = to.normal(*j).dot(p - to.point(*j));
     matches.all.push_back({from.point(i), normal, gap_m, std::min(to.flatness(*j), from.flatness(i))});
   }
-  matches.overlap = from.size() == 0 ? 0 : static_cast<double>(near) / static_cast<double>(from.size());
+  const std::size_t all = from.withPlane().size();
+  matches.overlap = all == 0 ? 0 : static_cast<double>(near) / static_cast<double>(all);
   return matches;
 }
 

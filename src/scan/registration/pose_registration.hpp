@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <cstddef>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,8 @@
 namespace cluxel::scan {
 
 struct RegistrationParams {
+  /// Of each scan about so many points are compared, half of them above the ground; all of a scan that has fewer.
+  std::size_t max_compared = std::numeric_limits<std::size_t>::max();
   double reach_m = 1.0;          ///< how wrong the poses of neighbouring scans may be to each other
   double voxel_m = 0.3;          ///< scans are thinned to one point per cube of this edge
   double min_overlap = 0.3;      ///< share of points with a neighbour in the other scan, below which a pair is left out
