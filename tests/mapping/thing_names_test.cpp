@@ -9,6 +9,7 @@
 #include <set>
 
 #include "mapping/change/map_things.hpp"
+#include "mapping/change/member_places.hpp"
 #include "mapping/small_campus.hpp"
 #include "rdf/map_iris.hpp"
 
@@ -94,6 +95,42 @@ TEST_F(ThingNames, AreNeverGivenTwice) {
   change({thingMembers("first", {1, 2, 3, 4}), thingMembers("rest", {5, 6, 7, 8, 9})});
   EXPECT_EQ(nameOfObject("rest"), rdf::iriOfThing(hashOf("first"))) << "it shares most";
   EXPECT_NE(nameOfObject("first"), rdf::iriOfThing(hashOf("first")));
+}
+
+TEST_F(ThingNames, ComeBackToThoseThatHadThemWhenAJoinIsUndone) {
+  change({thingMembers("old", {1, 2, 3, 4})});
+  change({thingMembers("old", {1, 2, 3, 4}), thingMembers("young", {11, 12, 13})});
+  change({thingMembers("joined", {1, 2, 11, 12, 13})});
+  EXPECT_EQ(nameOfObject("joined"), rdf::iriOfThing(hashOf("old")));
+  change({thingMembers("old", {1, 2, 3, 4}), thingMembers("young", {11, 12, 13})});
+  EXPECT_EQ(nameOfObject("old"), rdf::iriOfThing(hashOf("old")));
+  EXPECT_EQ(nameOfObject("young"), rdf::iriOfThing(hashOf("young"))) << "though it shares most with what was joined";
+}
+
+TEST_F(ThingNames, EndOnce) {
+  change({thingMembers("old", {1, 2}), thingMembers("young", {3, 4, 5})});
+  change({thingMembers("joined", {1, 2, 3, 4, 5})});
+  change({});
+  change({thingMembers("joined", {1, 2, 3, 4, 5})});
+  change({});
+  std::map<std::string, int> ends;
+  forEachHistoryLink(QuadReader(environment->read()), "invalidatedAtTime",
+                     [&](const Term& thing, const Term&) { ++ends[thing.text]; });
+  EXPECT_EQ(ends.size(), 2U);
+  for (const auto& [thing, times] : ends) EXPECT_EQ(times, 1) << thing;
+}
+
+TEST_F(ThingNames, OfWhatIsJoinedByPlaceLeadToTheJoin) {
+  const auto at = [](const std::string& name, std::vector<std::uint64_t> seeds, const std::vector<double>& x_m) {
+    ObjectMembers object = thingMembers(name, std::move(seeds));
+    for (const double x : x_m) object.places.push_back(placeOf({x, 0, 0}));
+    return object;
+  };
+  change({at("first", {1, 2, 3}, {0, 1, 2}), at("second", {11, 12}, {5, 6})});
+  change({at("joined", {1, 2, 3, 21, 22}, {0, 1, 2, 5, 6})});
+  EXPECT_EQ(nameOfObject("joined"), rdf::iriOfThing(hashOf("first")));
+  ASSERT_TRUE(found("object/" + hashOf("second").hex())) << "its seeds are gone; its name was lost";
+  EXPECT_EQ(found("object/" + hashOf("second").hex())->object, hashOf("joined"));
 }
 
 /// Objects whose members come and go at random; objects with the same members have the same name.
@@ -187,6 +224,48 @@ TEST(ThingNamesOfSomeObjects, AreThoseOfAllObjects) {
       before = after;
     }
     EXPECT_LT(given, present);
+  }
+}
+
+/// The name of each object.
+std::map<ContentHash, std::string> namesOf(const std::vector<ObjectMembers>& objects,
+                                           const rdf::ReadTransaction& transaction) {
+  const Things things = storedThings(QuadReader(transaction));
+  std::map<ContentHash, std::string> names;
+  for (const ObjectMembers& object : objects) names[object.id] = thingOf(things, object.id).iri;
+  return names;
+}
+
+TEST(ThingNamesOfSomeObjects, AreAsBeforeWhenAChangeIsUndone) {
+  for (unsigned seed = 1; seed <= 12; ++seed) {
+    std::mt19937 random(seed);
+    const auto environment = Environment::temporary();
+    WriteTransaction transaction = environment->write();
+    RandomObjects world;
+    std::vector<ObjectMembers> before;
+    int second = 10'000;
+    const auto write = [&](const std::vector<ObjectMembers>& from, const std::vector<ObjectMembers>& to) {
+      writeThings(transaction, "2026-01-01T0" + std::to_string(++second) + ".000000Z", from, to);
+    };
+    for (int round = 0; round < 60; ++round) {
+      world.change(random);
+      const std::vector<ObjectMembers> after = world.objects();
+      const auto names = namesOf(before, transaction);
+      write(before, after);
+      const auto names_after = namesOf(after, transaction);
+      write(after, before);
+      EXPECT_EQ(namesOf(before, transaction), names) << "seed " << seed << ", round " << round;
+      write(before, after);
+      ASSERT_EQ(namesOf(after, transaction), names_after) << "seed " << seed << ", round " << round;
+      std::set<std::string> held;
+      for (const auto& [object, name] : names_after) EXPECT_TRUE(held.insert(name).second) << "two objects, one name";
+      std::set<std::string> ended;
+      forEachHistoryLink(QuadReader(transaction), "invalidatedAtTime", [&](const Term& thing, const Term&) {
+        EXPECT_TRUE(ended.insert(thing.text).second) << "ended twice";
+        EXPECT_FALSE(held.contains(thing.text)) << "ended, and there";
+      });
+      before = after;
+    }
   }
 }
 

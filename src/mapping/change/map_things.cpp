@@ -19,6 +19,7 @@ using rdf::vocabulary::kGraphHistory;
 struct Heirs {
   std::vector<std::vector<std::size_t>> before_of;     ///< by object after: those whose name it may inherit
   std::vector<std::vector<std::size_t>> ancestors_of;  ///< by object after: all that went on in it
+  std::vector<std::optional<std::size_t>> heir_of;     ///< by object before: the one that may inherit its name
 };
 
 /// The objects that have the same name before and after, each with its number before. Objects of one map have no common
@@ -36,14 +37,15 @@ std::map<ContentHash, std::size_t> sameObjects(const std::vector<ObjectMembers>&
 }
 
 Heirs heirsOf(const std::vector<ObjectMembers>& before, const std::vector<ObjectMembers>& after, ObjectsOf objects_of) {
-  Heirs heirs{std::vector<std::vector<std::size_t>>(after.size()), std::vector<std::vector<std::size_t>>(after.size())};
+  Heirs heirs{std::vector<std::vector<std::size_t>>(after.size()), std::vector<std::vector<std::size_t>>(after.size()),
+              std::vector<std::optional<std::size_t>>(before.size())};
   std::vector<std::vector<std::size_t>> by_place_of(after.size());
   const auto same = sameObjects(before, after, objects_of);
   ObjectList others_before, others_after;
   std::vector<std::size_t> number_before, number_after;
   for (std::size_t a = 0; a < after.size(); ++a)
     if (const auto found = same.find(after[a].id); found != same.end())
-      heirs.before_of[a] = heirs.ancestors_of[a] = {found->second};
+      heirs.before_of[a] = heirs.ancestors_of[a] = {found->second}, heirs.heir_of[found->second] = a;
     else
       others_after.push_back(&after[a]), number_after.push_back(a);
   for (std::size_t b = 0; b < before.size(); ++b)
@@ -51,7 +53,7 @@ Heirs heirsOf(const std::vector<ObjectMembers>& before, const std::vector<Object
   const auto successors = successorsOf(others_before, objects_of, others_after);
   for (std::size_t i = 0; i < successors.size(); ++i) {
     const std::size_t b = number_before[i];
-    std::optional<std::size_t> heir;
+    std::optional<std::size_t>& heir = heirs.heir_of[b];
     std::size_t most = 0;
     bool is_by_place = false;
     for (const auto& [other, count, by_place] : successors[i]) {
@@ -80,19 +82,29 @@ class Naming {
   void run(const std::vector<ObjectMembers>& before, const std::vector<ObjectMembers>& after, ObjectsOf objects_of) {
     const Heirs heirs = heirsOf(before, after, objects_of);
     std::vector<std::optional<Thing>> names(after.size());
-    for (std::size_t a = 0; a < after.size(); ++a) names[a] = inherited(before, heirs.before_of[a]);
-    for (const auto& name : names)
-      if (name) held_.insert(name->iri);
+    const std::vector<char> is_back = areBack(before, after);
+    for (std::size_t a = 0; a < after.size(); ++a)
+      if (is_back[a] == 0) names[a] = held(inherited(before, heirs.before_of[a]));
+    // Of several that had the same name, the one to which it would come anyway is first.
+    for (std::size_t a = 0; a < after.size(); ++a)
+      if (is_back[a] != 0 && hadName(after[a].id, inherited(before, heirs.before_of[a])))
+        names[a] = held(inherited(before, heirs.before_of[a]));
+    for (std::size_t a = 0; a < after.size(); ++a)
+      if (is_back[a] != 0 && !names[a]) names[a] = returned(after[a].id);
+    for (std::size_t a = 0; a < after.size(); ++a)
+      if (is_back[a] != 0 && !names[a]) names[a] = held(inherited(before, heirs.before_of[a]));
     for (std::size_t a = 0; a < after.size(); ++a) {
-      if (names[a]) continue;
-      names[a] = returned(after[a].id);
       if (names[a]) continue;
       names[a] = named(after[a].id);
       for (const std::size_t b : heirs.ancestors_of[a]) derive(names[a]->iri, nameOf(before[b].id).iri);
     }
     for (std::size_t a = 0; a < after.size(); ++a) link(after[a].id, *names[a]);
-    for (std::size_t b = 0; b < before.size(); ++b)
-      if (const Thing thing = nameOf(before[b].id); !isHeld(thing.iri)) end(thing);
+    for (std::size_t b = 0; b < before.size(); ++b) {
+      const Thing thing = nameOf(before[b].id);
+      if (isHeld(thing.iri)) continue;
+      if (const auto heir = heirs.heir_of[b]) derive(names[*heir]->iri, thing.iri);
+      end(thing);
+    }
     writer_.flush();
   }
 
@@ -109,24 +121,42 @@ class Naming {
     if (thing != from) add(thing, "wasDerivedFrom", Term::iri(from));
   }
 
-  /// The oldest of the names that meet in an object; the others end in it.
+  /// Which objects after are such that there were before the last change: they have things, and were not there now.
+  std::vector<char> areBack(const std::vector<ObjectMembers>& before, const std::vector<ObjectMembers>& after) {
+    std::set<ContentHash> there;
+    for (const ObjectMembers& object : before) there.insert(object.id);
+    std::vector<char> are_back;
+    for (const ObjectMembers& object : after)
+      are_back.push_back(!there.contains(object.id) && !thingsOf(object.id).empty() ? 1 : 0);
+    return are_back;
+  }
+
+  /// The oldest of the names that meet in an object and that no other has. The others end.
   std::optional<Thing> inherited(const std::vector<ObjectMembers>& before, const std::vector<std::size_t>& from) {
-    std::vector<Thing> claims;
-    for (const std::size_t b : from) claims.push_back(nameOf(before[b].id));
-    if (claims.empty()) return std::nullopt;
-    const Thing oldest = *std::min_element(claims.begin(), claims.end());
-    for (const Thing& claim : claims) derive(oldest.iri, claim.iri);
+    std::optional<Thing> oldest;
+    for (const std::size_t b : from)
+      if (const Thing claim = nameOf(before[b].id); !held_.contains(claim.iri) && (!oldest || claim < *oldest))
+        oldest = claim;
     return oldest;
   }
 
+  bool hadName(const ContentHash& object, const std::optional<Thing>& name) {
+    const std::vector<Thing>& things = thingsOf(object);
+    return name &&
+           std::any_of(things.begin(), things.end(), [&](const Thing& thing) { return thing.iri == name->iri; });
+  }
+
   std::optional<Thing> returned(const ContentHash& object) {
-    for (const Thing& thing : thingsOf(object)) {
-      if (isHeld(thing.iri)) continue;
-      held_.insert(thing.iri);
-      for (const Term& time : stored_.endsOf(thing.iri)) remove(thing.iri, "invalidatedAtTime", time);
-      return thing;
-    }
+    for (const Thing& thing : thingsOf(object))
+      if (!isHeld(thing.iri)) return held(thing);
     return std::nullopt;
+  }
+
+  /// The thing goes on: it has not ended.
+  std::optional<Thing> held(std::optional<Thing> thing) {
+    if (thing && held_.insert(thing->iri).second)
+      for (const Term& time : stored_.endsOf(thing->iri)) remove(thing->iri, "invalidatedAtTime", time);
+    return thing;
   }
 
   const std::vector<Thing>& thingsOf(const ContentHash& object) {
@@ -171,8 +201,10 @@ class Naming {
     if (!is_linked) add(iri, "specializationOf", Term::iri(thing.iri));
   }
 
+  /// A thing that ended earlier keeps that time.
   void end(const Thing& thing) {
-    if (ended_.insert(thing.iri).second) add(thing.iri, "invalidatedAtTime", timeTerm());
+    if (ended_.insert(thing.iri).second && stored_.endsOf(thing.iri).empty())
+      add(thing.iri, "invalidatedAtTime", timeTerm());
   }
 
   rdf::QuadReader reader_;  ///< sees the state before, since the writer flushes at the end

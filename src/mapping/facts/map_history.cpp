@@ -105,17 +105,27 @@ std::vector<RetractedScan> retractedScans(const rdf::ReadTransaction& transactio
 }
 
 void addLineage(rdf::WriteTransaction& transaction, const std::string& activity_iri, const ObjectChanges& changes) {
+  const rdf::QuadReader before(static_cast<const rdf::ReadTransaction&>(transaction));
   rdf::QuadWriter writer(transaction);
   const Term graph = Term::iri(rdf::vocabulary::kGraphHistory), activity = Term::iri(activity_iri);
+  /// An object that has come back is not gone.
+  const auto removeEnd = [&](const ContentHash& object) {
+    for (const Quad& quad : quadsAbout(before, rdf::iriOfObject(object), rdf::vocabulary::kGraphHistory))
+      if (quad.predicate.text == provenance("wasInvalidatedBy"))
+        writer.remove(rdf::QuadIds{writer.intern(quad.subject), writer.intern(quad.predicate),
+                                   writer.intern(quad.object), writer.intern(quad.graph)});
+  };
   const auto add = [&](const ContentHash& subject, const std::string& property, const Term& object) {
     writer.add(Quad{Term::iri(rdf::iriOfObject(subject)), Term::iri(property), object, graph});
   };
   for (const auto* objects : {&changes.changed, &changes.split, &changes.joined})
     for (const DerivedObject& object : *objects) {
+      removeEnd(object.id);
       for (const ContentHash& from : object.from)
         add(object.id, provenance("wasDerivedFrom"), Term::iri(rdf::iriOfObject(from)));
       add(object.id, provenance("wasGeneratedBy"), activity);
     }
+  for (const ContentHash& added : changes.added) removeEnd(added);
   for (const ContentHash& gone : changes.gone) add(gone, provenance("wasInvalidatedBy"), activity);
   writer.flush();
 }
