@@ -38,6 +38,16 @@ TEST(ObjectChanges, TellAddedGoneChangedSplitAndJoined) {
   EXPECT_EQ(changes.joined.front().from.size(), 2U);
 }
 
+TEST(ObjectChanges, OfAMergeTellWhatHasJoinedAnObjectOfTheSameName) {
+  const ObjectMembers piece{idNamed("piece"), "Tree", {1, 2}}, whole{idNamed("whole"), "Tree", {1, 2, 3, 4}};
+  const ObjectChanges changes = compareObjects({piece, whole}, {whole});
+  EXPECT_EQ(changes.unchanged, 0U);
+  EXPECT_TRUE(changes.gone.empty());
+  ASSERT_EQ(changes.joined.size(), 1U);
+  EXPECT_EQ(changes.joined.front().id, whole.id);
+  EXPECT_EQ(changes.joined.front().from.size(), 2U) << "the piece was not mentioned";
+}
+
 TEST(ObjectChanges, OfTwoStatesOfOneMapNeedOnlyWhatDiffers) {
   std::mt19937 random(4);
   const auto stateOf = [&](std::vector<std::uint64_t> seeds) {

@@ -227,7 +227,8 @@ class Merge {
     std::vector<std::size_t> others;
     for (std::size_t i = 0; i < maps_.size(); ++i) {
       if (i == base_) continue;
-      const std::vector<ObjectMembers> other = storedMembers(readers_[i].transaction());
+      const std::vector<ObjectMembers> other =
+          storedMembers(readers_[i].transaction(), motionsBy(maps_[i].T_first_map, readers_[i].clouds()));
       editor.result().before.insert(editor.result().before.end(), other.begin(), other.end());
       if (isLender(i, additions))
         additions.copy(readers_[i].transaction(), true);

@@ -8,6 +8,8 @@
 #include <tuple>
 #include <unordered_map>
 
+#include "mapping/clouds/scan_store.hpp"
+
 namespace cluxel::mapping {
 
 namespace {
@@ -79,6 +81,28 @@ class PlaceGrid {
 };
 
 }  // namespace
+
+CloudMotions motionsBetween(const rdf::ReadTransaction& before, const std::vector<SeenCloud>& seen_before,
+                            const std::vector<Cloud>& now) {
+  std::map<ContentHash, ContentHash> contents;
+  for (const SeenCloud& cloud : seen_before) contents.emplace(cloud.id, cloud.content);
+  CloudMotions motions;
+  const std::vector<SeenCloud> seen_now = seenClouds(now);
+  for (std::size_t i = 0; i < now.size(); ++i) {
+    const auto known = contents.find(now[i].id);
+    if (known == contents.end() || known->second == seen_now[i].content) continue;
+    if (const auto was = storedCloud(before, now[i].id))
+      motions.emplace(now[i].id, now[i].T_map_sensor * was->T_map_sensor.inverse());
+  }
+  return motions;
+}
+
+CloudMotions motionsBy(const Eigen::Isometry3d& T, const std::vector<Cloud>& clouds) {
+  CloudMotions motions;
+  if (T.matrix().isIdentity(0)) return motions;
+  for (const Cloud& cloud : clouds) motions.emplace(cloud.id, T);
+  return motions;
+}
 
 MemberPlace placeOf(const Eigen::Vector3d& p_map) {
   MemberPlace place = std::uint64_t{1} << 63U;

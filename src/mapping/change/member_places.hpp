@@ -3,14 +3,24 @@
 // on.
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <cstdint>
 #include <map>
 #include <vector>
 
 #include "mapping/change/seed_owners.hpp"
+#include "mapping/clouds/cloud.hpp"
+#include "mapping/layers/semantic_state.hpp"
 
 namespace cluxel::mapping {
+
+/// How clouds have moved, by id: from where their points were to where they are. Those that stayed are not listed.
+using CloudMotions = std::map<ContentHash, Eigen::Isometry3d>;
+/// Of the clouds that a map has before and now. `seen_before`: the clouds that `before` has, as its facts count them.
+CloudMotions motionsBetween(const rdf::ReadTransaction& before, const std::vector<SeenCloud>& seen_before,
+                            const std::vector<Cloud>& now);
+/// All clouds move by `T`; none when it is the identity.
+CloudMotions motionsBy(const Eigen::Isometry3d& T, const std::vector<Cloud>& clouds);
 
 /// `p_map` [m] in steps of 5 cm. Within some 52 km of the origin no two places are the same.
 MemberPlace placeOf(const Eigen::Vector3d& p_map);

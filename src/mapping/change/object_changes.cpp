@@ -80,7 +80,7 @@ ObjectChanges changesBetween(const ObjectList& before, ObjectsOf objects_of, con
     }
     DerivedObject derived{after[a]->id, {}};
     for (const std::uint32_t b : predecessors) derived.from.push_back(before[b]->id);
-    if (std::find(derived.from.begin(), derived.from.end(), derived.id) != derived.from.end())
+    if (std::all_of(derived.from.begin(), derived.from.end(), [&](const auto& from) { return from == derived.id; }))
       ++changes.unchanged;
     else if (predecessors.size() > 1)
       changes.joined.push_back(std::move(derived));

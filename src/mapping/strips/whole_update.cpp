@@ -214,7 +214,11 @@ bool canBeInStrips(const LayerWork& work) {
 
 SemanticUpdate updateAll(const LayerWork& work, const OutputChanges& changes) {
   std::vector<ObjectMembers> before;
-  if (work.params.lists_objects) before = formerObjects(work.transaction, changes);
+  if (work.params.lists_objects) {
+    const SemanticState former = storedSemanticState(work.transaction).value_or(SemanticState{});
+    before = formerObjects(work.transaction, changes,
+                           motionsBetween(work.transaction.before(), former.clouds, storedClouds(work.transaction)));
+  }
   std::optional<SemanticUpdate> update = updateInStrips(work);
   if (!update) update = updateAtOnce(work);
   update->before = std::move(before);

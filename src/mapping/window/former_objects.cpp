@@ -2,7 +2,6 @@
 // Layers number cluxels as the summaries of the same commit do.
 #include "mapping/window/former_objects.hpp"
 
-#include "mapping/change/member_places.hpp"
 #include "mapping/damaged_map.hpp"
 #include "mapping/layers/stored_layers.hpp"
 #include "mapping/map_tables.hpp"
@@ -26,6 +25,7 @@ void MemberLists::add(const TileLayer& layer, const perception::SummaryTile& sum
     }
   }
   const Eigen::Vector3d corner = perception::cornerOf(layer.key);
+  const std::vector<const Eigen::Isometry3d*> motions = motionsOf(summary.scans);
   for (std::size_t c = 0; c < layer.size(); ++c) {
     const std::uint32_t share = layer.share_of_cluxel[c];
     if (share == kNoShare || of_share[share] == nullptr) continue;
@@ -33,8 +33,20 @@ void MemberLists::add(const TileLayer& layer, const perception::SummaryTile& sum
     members.seeds.push_back(memberKey(summary.scans[summary.seed_scan[c]], summary.seed_point[c]));
     if (of_share[share]->is_class_wide || (!has_places && members.places.empty())) continue;
     members.places.resize(members.seeds.size(), kNoMemberPlace);
-    if (has_places) members.places.back() = placeOf(corner + summary.mean[c].cast<double>());
+    if (!has_places) continue;
+    const Eigen::Vector3d p = corner + summary.mean[c].cast<double>();
+    const Eigen::Isometry3d* motion = motions[summary.seed_scan[c]];
+    members.places.back() = placeOf(motion != nullptr ? *motion * p : p);
   }
+}
+
+std::vector<const Eigen::Isometry3d*> MemberLists::motionsOf(const std::vector<ContentHash>& scans) const {
+  std::vector<const Eigen::Isometry3d*> motions;
+  for (const ContentHash& scan : scans) {
+    const auto moved = motions_.find(scan);
+    motions.push_back(moved == motions_.end() ? nullptr : &moved->second);
+  }
+  return motions;
 }
 
 std::vector<ObjectMembers> MemberLists::take() {
@@ -44,8 +56,8 @@ std::vector<ObjectMembers> MemberLists::take() {
   return all;
 }
 
-std::vector<ObjectMembers> storedMembers(const rdf::ReadTransaction& transaction) {
-  MemberLists members(transaction);
+std::vector<ObjectMembers> storedMembers(const rdf::ReadTransaction& transaction, CloudMotions motions) {
+  MemberLists members(transaction, std::move(motions));
   forEachStoredLayer(transaction, [&](const TileLayer& layer) {
     const std::string_view summary = requiredBlock(transaction, tables::kSummaries, layer.key);
     members.add(layer, perception::seedsFromBytes(summary), true, [](const ContentHash&) { return true; });
@@ -65,8 +77,9 @@ void FormerObjects::add(const TileLayer& layer, const std::function<bool(const C
     members_.add(layer, *summary, former_.isOther(layer.key) || will_change_(layer.key), is_wanted);
 }
 
-std::vector<ObjectMembers> formerObjects(const rdf::ReadTransaction& transaction, const OutputChanges& changes) {
-  MemberLists members(transaction);
+std::vector<ObjectMembers> formerObjects(const rdf::ReadTransaction& transaction, const OutputChanges& changes,
+                                         CloudMotions motions) {
+  MemberLists members(transaction, std::move(motions));
   forEachStoredLayer(transaction, [&](const TileLayer& layer) {
     const auto changed = changes.former_summaries.find(layer.key);
     const bool is_other = changed != changes.former_summaries.end();

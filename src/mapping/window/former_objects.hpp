@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "mapping/build/tile_stages.hpp"
-#include "mapping/change/object_changes.hpp"
+#include "mapping/change/member_places.hpp"
 #include "mapping/layers/tile_layer.hpp"
 #include "mapping/window/map_window.hpp"
 
@@ -16,7 +16,9 @@ namespace cluxel::mapping {
 /// Collects the members of objects from the layers of tiles.
 class MemberLists {
  public:
-  explicit MemberLists(const rdf::ReadTransaction& transaction) : transaction_(transaction) {}
+  /// Places are where the seed points are after `motions`.
+  explicit MemberLists(const rdf::ReadTransaction& transaction, CloudMotions motions = {})
+      : transaction_(transaction), motions_(std::move(motions)) {}
   /// Adds the members that `layer` holds of the objects for which `is_wanted`. `summary`: of the same tile, of which
   /// places matter when its seeds may be others afterwards.
   void add(const TileLayer& layer, const perception::SummaryTile& summary, bool has_places,
@@ -30,12 +32,17 @@ class MemberLists {
     bool is_class_wide = false;
   };
 
+  /// For each scan of a tile how it has moved; null for one that has not.
+  std::vector<const Eigen::Isometry3d*> motionsOf(const std::vector<ContentHash>& scans) const;
+
   const rdf::ReadTransaction& transaction_;
+  CloudMotions motions_;
   std::map<ContentHash, Collected> objects_;
 };
 
-/// All objects of a map as it is stored, read tile by tile. Memory: 16 bytes a cluxel, of class-wide objects 8.
-std::vector<ObjectMembers> storedMembers(const rdf::ReadTransaction& transaction);
+/// All objects of a map as it is stored, read tile by tile, with places as after `motions`. Memory: 16 bytes a cluxel,
+/// of class-wide objects 8.
+std::vector<ObjectMembers> storedMembers(const rdf::ReadTransaction& transaction, CloudMotions motions = {});
 
 /// Collects members from the layers of tiles that are not written yet.
 class FormerObjects {
@@ -43,8 +50,11 @@ class FormerObjects {
   /// `stages` holds the summaries of the tiles that did not change. `will_change`: tiles of which the seeds may be
   /// others later in the same change.
   FormerObjects(const rdf::ReadTransaction& transaction, const TileStages& stages, FormerSummaries& former,
-                std::function<bool(const perception::TileKey&)> will_change)
-      : stages_(stages), former_(former), will_change_(std::move(will_change)), members_(transaction) {}
+                std::function<bool(const perception::TileKey&)> will_change, CloudMotions motions)
+      : stages_(stages),
+        former_(former),
+        will_change_(std::move(will_change)),
+        members_(transaction, std::move(motions)) {}
 
   /// Adds the members that `layer` holds of the objects for which `is_wanted`.
   void add(const TileLayer& layer, const std::function<bool(const ContentHash&)>& is_wanted);
@@ -62,6 +72,7 @@ class FormerObjects {
 };
 
 /// All objects of the map before the change, while its layers are not written yet. Memory as above.
-std::vector<ObjectMembers> formerObjects(const rdf::ReadTransaction& transaction, const OutputChanges& changes);
+std::vector<ObjectMembers> formerObjects(const rdf::ReadTransaction& transaction, const OutputChanges& changes,
+                                         CloudMotions motions);
 
 }  // namespace cluxel::mapping

@@ -291,7 +291,8 @@ class LocalUpdate {
   std::vector<ObjectMembers> replacedObjects(const MapWindow& window, const WindowDecision& decision) {
     const auto is_replaced = [&](const ContentHash& object) { return decision.replaced.contains(object); };
     const auto changes = [&](const TileKey& tile) { return strip_ != nullptr && strip_->as_before.contains(tile); };
-    FormerObjects members(transaction_, stages_, former_summaries_, changes);
+    FormerObjects members(transaction_, stages_, former_summaries_, changes,
+                          motionsBetween(transaction_.before(), before_.clouds, clouds_));
     for (const auto& [tile, layer] : window.layers) members.add(layer, is_replaced);
     return members.take();
   }
