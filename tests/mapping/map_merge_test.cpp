@@ -118,12 +118,15 @@ TEST_F(MapMerge, SaysOnceWhatTheMapsSayOfBlankNodes) {
   insert(a, "[] <http://x/p> 'x' . [] <http://x/p> [ <http://x/q> 1 ]");
   insert(b, "[] <http://x/p> 'y'");
   insert(b, "[] <http://x/p> 'x'");
+  const std::string tree = "a <" + rdf::vocabulary::clx("Tree") + ">";
+  insert(b, "_:x " + tree + " ; <" + rdf::vocabulary::clx("near") + "> _:y . _:y " + tree);
   merge({{a}, {b}});
   mergeMaps({{b}, {a}}, turned, {}, silence());
   const std::string text = canonicalText(target());
   EXPECT_EQ(canonicalText(turned), text) << "in either order";
+  EXPECT_THAT(text, HasSubstr("neighbourTree> _:c14n")) << "a rule has derived something";
   const MapReader map(target());
-  EXPECT_EQ(operatorStatements(map.quads()).size(), 4U);
+  EXPECT_EQ(operatorStatements(map.quads()).size(), 7U);
   const fs::path again = folder.path() / "again";
   mergeMaps({{target()}, {a}}, again, {}, silence());
   EXPECT_EQ(canonicalText(again), text) << "an old copy says nothing new";

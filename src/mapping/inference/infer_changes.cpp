@@ -33,11 +33,6 @@ using rdf::Triple;
 
 using Outputs = std::vector<RuleOutput>;
 
-bool isDerivation(std::string_view iri) {
-  static const std::string some = rdf::iriOfDerivation({});
-  return iri.starts_with(std::string_view(some).substr(0, some.rfind('/') + 1));
-}
-
 struct ChangedQuad {
   rdf::QuadIds quad;
   bool is_added = false;
@@ -172,7 +167,7 @@ bool ChangeInference::touchesDerivations(const rdf::QuadDifference& change) cons
   const auto type = reader_.idOf(Term::iri(rdf::vocabulary::clx("Derivation")));
   const auto is_part = [&](const auto& fact) {
     return (fact.p == words_.type ? fact.o == type : std::find(parts.begin(), parts.end(), fact.p) != parts.end()) &&
-           isDerivation(reader_.viewOf(fact.s).text);
+           isDerivation(reader_.viewOf(fact.s));
   };
   return std::any_of(change.added.begin(), change.added.end(), is_part) ||
          std::any_of(change.removed.begin(), change.removed.end(), is_part) ||

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::string_view kKey = "inferred";
 /// Increase it when the program infers other facts, or stores the record in another form.
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;
 
 /// What the record belongs to.
 struct Basis {

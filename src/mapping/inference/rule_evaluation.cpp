@@ -3,6 +3,7 @@
 #include "mapping/inference/rule_evaluation.hpp"
 
 #include <algorithm>
+#include <array>
 #include <unordered_map>
 
 #include "base/content_hash.hpp"
@@ -173,13 +174,33 @@ std::vector<std::string> propertiesOfDerivations() {
   return {words::rdf("type"), words::rdf("subject"), words::rdf("predicate"), words::rdf("object"), words::clx("rule")};
 }
 
+namespace {
+
+/// A blank node for a fact about blank nodes: canonical exports name these by what is said of them, and an IRI would
+/// follow from their stored labels.
+Term nameOfDerivation(const std::array<Term, 3>& fact, const std::string& rule_name) {
+  ContentHasher hasher;
+  hasher.addText(rule_name);
+  for (const Term& part : fact) hasher.addText(toNTriples(part));
+  const std::string iri = rdf::iriOfDerivation(hasher.finish());
+  const bool is_blank =
+      std::any_of(fact.begin(), fact.end(), [](const Term& part) { return part.kind == TermKind::BlankNode; });
+  return is_blank ? Term::blank(std::string(kBlankDerivation) + iri.substr(iri.rfind('/') + 1)) : Term::iri(iri);
+}
+
+}  // namespace
+
+bool isDerivation(const rdf::TermView& term) {
+  static const std::string some = rdf::iriOfDerivation({});
+  return term.text.starts_with(
+      term.kind == TermKind::BlankNode ? kBlankDerivation : std::string_view(some).substr(0, some.rfind('/') + 1));
+}
+
 std::vector<rdf::Triple> derivationOf(const rdf::QuadReader& reader, rdf::QuadWriter& writer, const rdf::Triple& fact,
                                       const NamedText& rule) {
   const std::string name = ruleFileName(rule);
-  ContentHasher hasher;
-  hasher.addText(name);
-  for (const rdf::TermId part : {fact.s, fact.p, fact.o}) hasher.addText(toNTriples(reader.termOf(part)));
-  const rdf::TermId node = writer.intern(Term::iri(rdf::iriOfDerivation(hasher.finish())));
+  const rdf::TermId node =
+      writer.intern(nameOfDerivation({reader.termOf(fact.s), reader.termOf(fact.p), reader.termOf(fact.o)}, name));
   const auto word = [&](const std::string& iri) { return writer.intern(Term::iri(iri)); };
   const auto properties = propertiesOfDerivations();
   return {{node, word(properties[0]), word(rdf::vocabulary::clx("Derivation"))},

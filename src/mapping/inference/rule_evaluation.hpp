@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "mapping/inference/rule_queries.hpp"
@@ -42,6 +43,9 @@ std::vector<rdf::Triple> replaceOutputs(std::vector<RuleOutput>& outputs,
 std::vector<rdf::TermId> affectedKeys(const rdf::QuadReader& reader, const RuleShape& shape, const ValuesOf& values,
                                       const rdf::InferenceCheck& check);
 
+/// Begins the labels of derivations that are blank nodes.
+inline constexpr std::string_view kBlankDerivation = "derivation";
+bool isDerivation(const rdf::TermView& term);
 /// The properties of the quads of derivationOf().
 std::vector<std::string> propertiesOfDerivations();
 /// The five quads of the resource that records the rule of a derived fact; new terms are added to the writer.
