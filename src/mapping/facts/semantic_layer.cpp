@@ -103,6 +103,10 @@ ParsedInputs parseInputs(const MapInputs& inputs) {
   parsed.rules = loadRuleTexts(ruleSources(inputs.rules), inputs.rule_roots, classCatalogueOf(inputs.ontology),
                                withCheckedQueries())
                      .require();
+  // The volumes of two cluxels that touch grow towards each other, from seeds that lie in them.
+  constexpr double kInside_m = 0.8;
+  const double edge_m = 2 * parsed.model.perception.clustering.max_reach_m + kInside_m;
+  parsed.rules.contact_m = std::max(parsed.rules.contact_m, edge_m);
   checkSparqlRules(inputs.sparql_rules);
   return parsed;
 }

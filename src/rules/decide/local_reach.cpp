@@ -14,9 +14,6 @@ namespace cluxel::rules {
 
 namespace {
 
-/// Edges of the cluxel graph and relations lead no farther than this in plan view [m].
-constexpr double kContact_m = 2;
-
 class Reaching {
  public:
   explicit Reaching(const RuleSet& rules) : rules_(rules) {}
@@ -88,7 +85,7 @@ class Reaching {
     double around = 0;
     for (const Condition& condition : conditions) around = std::max(around, reachOf(condition));
     if (tie->kind == Condition::Kind::Relation || tie->measure == PairMeasure::AdjacentFraction)
-      return kContact_m + around;
+      return rules_.contact_m + around;
     if (tie->measure == PairMeasure::VerticalGap || tie->measure == PairMeasure::AxisDistance)
       refuse("looks things up by a distance without a bound in plan view");
     return searchedAround(tie->upper ? tie->upper->value : tie->value->value) + around;
@@ -106,7 +103,7 @@ class Reaching {
         refuse("asks the map");
         return 0;
       case Kind::Relation:
-        return kContact_m;
+        return rules_.contact_m;
       case Kind::Pair: {
         const double limit = condition.value ? condition.value->value : 0;
         return reachOfPair(condition, std::max(limit, condition.upper ? condition.upper->value : 0));
@@ -120,7 +117,7 @@ class Reaching {
   }
 
   double reachOfPair(const Condition& condition, double limit_m) {
-    if (condition.measure == PairMeasure::AdjacentFraction) return kContact_m;
+    if (condition.measure == PairMeasure::AdjacentFraction) return rules_.contact_m;
     if (condition.target->kind == Target::Kind::Name) return 0;  // both are bound
     if (condition.measure == PairMeasure::VerticalGap || condition.measure == PairMeasure::AxisDistance)
       refuse("measures a distance without a bound in plan view");
@@ -165,7 +162,7 @@ class Reaching {
 
   const RuleSet& rules_;
   const Rule* rule_ = nullptr;
-  double reach_m_ = kContact_m;
+  double reach_m_ = rules_.contact_m;
   std::string obstacle_;
 };
 

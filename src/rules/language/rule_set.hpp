@@ -190,6 +190,8 @@ struct RuleSet {
   std::array<double, scan::kPrimitiveLabelCount> nothing{};
   std::vector<Rule> rules;  ///< in the order written
   bool asks_map = false;    ///< some condition is an `ask:`
+  /// Edges of the cluxel graph and relations lead no farther in plan view [m]. More with models of large volumes.
+  double contact_m = 2;
   std::vector<RuleSource> sources;
   ClassCatalogue catalogue;  ///< the classes it was checked against
   /// What may change while all else stays, and a hash of all else that a run reads; see numberThresholds(). Of
