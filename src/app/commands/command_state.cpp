@@ -117,10 +117,13 @@ std::vector<std::string> replaceEarlier(const mapping::MapReader& map, const Con
 std::vector<std::string> addAboutObject(const mapping::MapReader& map, const StateOptions& options,
                                         mapping::StatementEdit& edit, ProgressSink& sink) {
   if (const std::string note = tasks::nameNote(map, options.object); !note.empty()) sink.note(note);
-  const ContentHash object = map.objectIds()[tasks::objectNamed(map, options.object)];
-  const mapping::PointAnchor anchor = map.anchorOf(object);
+  const std::uint32_t number = tasks::objectNamed(map, options.object);
+  const ContentHash object = map.objectIds()[number];
+  const bool is_wide = map.isClassWide(object);
+  const mapping::PointAnchor anchor = is_wide ? mapping::PointAnchor() : map.anchorOf(object);
+  const std::string class_iri = is_wide ? map.classOf(number) : "";
   const auto add = [&](StatementKind kind, const std::string& property, const Term& value) {
-    edit.added.push_back({kind, property, value, anchor, {}});
+    edit.added.push_back({kind, property, value, anchor, {}, class_iri});
   };
   const auto classOf = [&](const std::string& name) {
     return Term::iri(tasks::classNamed(classCatalogueOf(map.inputs().ontology), name));

@@ -6,6 +6,7 @@
 #include <array>
 
 #include "mapping/facts/object_geometry.hpp"
+#include "mapping/statements/stated_values.hpp"
 #include "mapping/statements/statement_places.hpp"
 #include "rules/objects/finished_objects.hpp"
 
@@ -97,7 +98,14 @@ class Application {
     Owner owner;  // objects are sorted by id: the first of equals has the smallest
     for (const auto& [object, count] : points)
       if (count > owner.points) owner = {object, count};
+    if (owner.object != kNoObject && objects_[owner.object].is_class_wide) return {};
     return owner;
+  }
+
+  Owner ownerOfClass(const std::string& class_iri) const {
+    for (std::uint32_t i = 0; i < objects_.size(); ++i)
+      if (objects_[i].is_class_wide && objects_[i].class_iri == class_iri) return {i, 1};
+    return {};
   }
 
   /// Finds what a statement about an object is about.
@@ -105,8 +113,8 @@ class Application {
     StatementOutcome& outcome = result_.outcomes[number];
     const Statement& statement = outcome.statement;
     if (statement.kind == StatementKind::IgnoreRegion) return;
-    if (statement.kind == StatementKind::Is && classes_.find(statement.value.text) == nullptr) return;
-    owner_of_[number] = ownerOf(statement.points);
+    if (statement.kind == StatementKind::Is && !isClassOfObjects(statement.value.text, classes_)) return;
+    owner_of_[number] = statement.class_iri.empty() ? ownerOf(statement.points) : ownerOfClass(statement.class_iri);
     const std::uint32_t object = owner_of_[number].object;
     if (object == kNoObject) return;
     outcome.effect = StatementEffect::Applied;
@@ -146,7 +154,7 @@ class Application {
     const std::vector<Eigen::Vector2d> polygon = cornersOf(outcome.statement.region, clouds_);
     if (polygon.empty()) return;
     for (std::uint32_t i = 0; i < objects_.size(); ++i) {
-      if (!class_statements_[i].empty() || !liesIn(polygon, objects_[i])) continue;
+      if (objects_[i].is_class_wide || !class_statements_[i].empty() || !liesIn(polygon, objects_[i])) continue;
       ignored_[i] = true;
       outcome.effect = StatementEffect::Applied;
       outcome.contradicts = true;
@@ -244,7 +252,7 @@ std::string summaryOf(const std::vector<StatementOutcome>& outcomes) {
   std::string text = "operator statements: " + std::to_string(counts[0]) + " applied";
   if (counts[1] > 0)
     text += ", " + std::to_string(counts[1]) +
-            " dormant (their points belong to no object, or the ontology lacks their class)";
+            " dormant (their points belong to no object or to the ground, or their class is none of objects)";
   if (counts[2] > 0) text += ", " + std::to_string(counts[2]) + " overruled by others about the same object";
   if (against > 0) text += "; " + std::to_string(against) + " against what the rules decide";
   return text;

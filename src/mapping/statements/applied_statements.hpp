@@ -19,7 +19,7 @@ inline constexpr std::string_view kOperatorRule = "operator";
 
 enum class StatementEffect : std::uint8_t {
   Applied,    ///< the map says what is stated
-  Dormant,    ///< no object owns an anchored point, nothing lies in the region, or the ontology lacks the class
+  Dormant,    ///< no object, or a class-wide one, owns the anchored points; or the class is none of objects
   Overruled,  ///< another statement about the same object comes first
 };
 std::string_view nameOf(StatementEffect effect);
@@ -46,9 +46,10 @@ struct AppliedStatements {
 };
 
 /// A statement applies to the object that owns most of its anchored points (ties: the smallest id that the rules
-/// gave). A region takes the objects of which more than half of the points lie inside. Of several statements about the
-/// class of an object the one with most points in it counts (ties: the smallest id); a region comes after them. The
-/// order of `statements` means nothing.
+/// gave). When that is class-wide, as the ground, it is dormant; only what is anchored to the class applies to such an
+/// object. A region takes the other objects of which more than half of the points lie inside. Of several statements
+/// about the class of an object the one with most points in it counts (ties: the smallest id); a region comes after
+/// them. The order of `statements` means nothing.
 AppliedStatements applyStatements(const std::vector<Statement>& statements, std::vector<rules::SemanticObject> objects,
                                   const perception::Scene& scene, const rules::ClassCatalogue& classes,
                                   PointOwners& owners, const std::vector<Cloud>& clouds);

@@ -24,14 +24,17 @@ class StatedObjects {
         stages_(parsed.model, parsed.inputs.params),
         lineage_(rdf::QuadReader(transaction), storedObjectIds(transaction)) {}
 
-  std::optional<PointAnchor> anchorOfIri(const std::string& iri) {
+  /// Of a class-wide object its class, else the points of an object. Absent when the IRI means none.
+  struct Anchor {
+    PointAnchor points;
+    std::string class_iri;
+  };
+  std::optional<Anchor> anchorOfIri(const std::string& iri) {
     const std::optional<ContentHash> object = objectOf(iri);
-    return object ? std::optional(anchorOfStored(transaction_, stages_, *object)) : std::nullopt;
-  }
-  bool isOfWholeClass(const std::string& iri) const {
-    const std::optional<ContentHash> object = objectOf(iri);
-    const auto record = object ? storedRecord(transaction_, *object) : std::nullopt;
-    return record && record->is_class_wide;
+    if (!object) return std::nullopt;
+    const auto record = storedRecord(transaction_, *object);
+    if (record && record->is_class_wide) return Anchor{{}, record->class_iri};
+    return Anchor{anchorOfStored(transaction_, stages_, *object), {}};
   }
 
  private:
@@ -47,15 +50,16 @@ class StatedObjects {
   Lineage lineage_;
 };
 
-Statement statementOf(const Quad& quad, PointAnchor anchor, const rules::ClassCatalogue& classes) {
+Statement statementOf(const Quad& quad, StatedObjects::Anchor anchor, const rules::ClassCatalogue& classes) {
   const bool is_type = quad.predicate.text == rdf::vocabulary::rdf("type");
   if (is_type && quad.object.kind != TermKind::Iri)
     throw Error(ErrorKind::NotFound, "the map's ontology knows no class " + toNTriples(quad.object));
   Statement statement{is_type ? StatementKind::Is : StatementKind::Fact,
                       is_type ? "" : quad.predicate.text,
                       quad.object,
-                      std::move(anchor),
-                      {}};
+                      std::move(anchor.points),
+                      {},
+                      std::move(anchor.class_iri)};
   requireStatable(statement, classes);
   return statement;
 }
@@ -82,8 +86,8 @@ void anchorStatedObjects(rdf::WriteTransaction& transaction, const ParsedInputs&
       unknown.insert(quad.subject.text);
       continue;
     }
-    const Statement statement = statementOf(quad, std::move(*anchor), parsed.rules.catalogue);
-    if (statement.kind == StatementKind::Is && objects.isOfWholeClass(quad.subject.text))
+    const Statement statement = statementOf(quad, *std::move(anchor), parsed.rules.catalogue);
+    if (statement.kind == StatementKind::Is && !statement.class_iri.empty())
       throw Error(ErrorKind::InvalidArgument,
                   "<" + quad.subject.text +
                       "> is one object over all of the map: another class would change all of it; state other "

@@ -56,13 +56,14 @@ constexpr std::array<std::string_view, 2> kAnyObject{"SpatialThing", "Object"};
 
 constexpr double kMinArea_m2 = 1e-4, kMaxCorner_m = 1e6;
 
+bool isAnyObject(const std::string& iri) {
+  return std::any_of(kAnyObject.begin(), kAnyObject.end(), [&](std::string_view local) { return iri == clx(local); });
+}
+
 void requireClass(const std::string& iri, const rules::ClassCatalogue& classes) {
   if (classes.find(iri) == nullptr) throw Error(ErrorKind::NotFound, "the map's ontology knows no class <" + iri + ">");
-  const bool is_other = std::any_of(kOtherThings.begin(), kOtherThings.end(),
-                                    [&](std::string_view local) { return classes.isA(iri, clx(local)); });
-  const bool is_any =
-      std::any_of(kAnyObject.begin(), kAnyObject.end(), [&](std::string_view local) { return iri == clx(local); });
-  if (is_other || is_any)
+  const bool is_any = isAnyObject(iri);
+  if (!isClassOfObjects(iri, classes))
     throw Error(ErrorKind::InvalidArgument, "<" + iri + "> is no class of objects" +
                                                 (is_any ? " that tells them apart" : "") +
                                                 "; state one such as clx:Tree or clx:StreetSign");
@@ -82,6 +83,12 @@ void requireRegion(const RegionAnchor& region) {
 }
 
 }  // namespace
+
+bool isClassOfObjects(const std::string& iri, const rules::ClassCatalogue& classes) {
+  return classes.find(iri) != nullptr && !isAnyObject(iri) &&
+         std::none_of(kOtherThings.begin(), kOtherThings.end(),
+                      [&](std::string_view local) { return classes.isA(iri, clx(local)); });
+}
 
 void requireStatable(const std::string& property) {
   const bool is_type = property == rdf::vocabulary::rdf("type");

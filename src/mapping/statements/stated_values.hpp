@@ -11,6 +11,9 @@
 
 namespace cluxel::mapping {
 
+/// Whether the ontology knows the class as one of objects: no part, place or cluxel, and not just any object.
+bool isClassOfObjects(const std::string& iri, const rules::ClassCatalogue& classes);
+
 /// Throws Error (InvalidArgument) for a property that the map computes, such as clx:height.
 void requireStatable(const std::string& property);
 

@@ -98,7 +98,7 @@ void readRegion(Statement& statement, const std::string& text, const std::string
 /// The values of a statement's properties, as written.
 struct Written {
   std::optional<StatementKind> kind;
-  std::optional<Term> class_iri, property, value;
+  std::optional<Term> class_iri, property, value, anchor_class;
 };
 
 void takeProperty(Statement& statement, Written& written, const Quad& quad) {
@@ -118,6 +118,8 @@ void takeProperty(Statement& statement, Written& written, const Quad& quad) {
     once(written.property);
   } else if (property == clx("statedValue")) {
     once(written.value);
+  } else if (property == clx("anchorClass")) {
+    once(written.anchor_class);
   } else if (property == clx("anchor")) {
     readAnchor(statement, quad.object.text, iri);
   } else if (property == clx("region")) {
@@ -138,7 +140,12 @@ Statement completedStatement(Statement statement, const Written& written, const 
     statement.property = written.property->text;
     statement.value = *written.value;
   }
-  if (statement.kind == StatementKind::IgnoreRegion ? statement.region.corners.empty() : statement.points.empty())
+  const bool has_class = written.anchor_class.has_value();
+  if (has_class) statement.class_iri = written.anchor_class->text;
+  if (has_class && (statement.kind != StatementKind::Fact || !statement.points.empty()))
+    refuseStatement(iri, "is anchored to a class, which only properties can be, and those to no points");
+  const bool is_region = statement.kind == StatementKind::IgnoreRegion;
+  if (is_region ? statement.region.corners.empty() : statement.points.empty() && !has_class)
     refuseStatement(iri, "has no anchor");
   if (iri != rdf::iriOfStatement(statement.id()))
     refuseStatement(iri, "was edited: its name is not the hash of its content");
@@ -152,6 +159,7 @@ ContentHash Statement::id() const {
   hasher.add(kind).addText(property).addText(kind == StatementKind::Remove ? "" : toNTriples(value));
   for (const auto& [scan, numbers] : points) hasher.addText(anchorText(scan, numbers));
   if (kind == StatementKind::IgnoreRegion) hasher.addText(regionText(region));
+  if (!class_iri.empty()) hasher.addText(class_iri);
   return hasher.finish();
 }
 
@@ -191,6 +199,7 @@ std::vector<Quad> quadsOf(const Statement& statement) {
     add(clx("statedValue"), statement.value);
   }
   for (const auto& [scan, points] : statement.points) add(clx("anchor"), Term::literal(anchorText(scan, points)));
+  if (!statement.class_iri.empty()) add(clx("anchorClass"), Term::iri(statement.class_iri));
   if (statement.kind == StatementKind::IgnoreRegion) add(clx("region"), Term::literal(regionText(statement.region)));
   return quads;
 }

@@ -35,8 +35,10 @@ struct Statement {
   StatementKind kind = StatementKind::Is;
   std::string property;  ///< of Fact: its IRI
   Term value;            ///< the class of Is and IsNot, the value of Fact
-  PointAnchor points;    ///< of all but IgnoreRegion
+  PointAnchor points;    ///< of all but IgnoreRegion, unless class_iri is set
   RegionAnchor region;   ///< of IgnoreRegion
+  /// Of a Fact about a class-wide object, such as the ground: the class whose object is meant.
+  std::string class_iri = {};
 
   /// Hash of all that is stated.
   ContentHash id() const;

@@ -97,7 +97,7 @@ class LocalUpdate {
       passed_ = passedObjects(transaction_, changedRays(before_.clouds, now_.clouds));
     }
     const std::vector<SemanticState> maps = lent_ != nullptr ? lent_->statesOfMaps() : std::vector{before_};
-    WindowStatements statements(transaction_, parsed_, stages_, clouds_, changes_, map_, maps, now_);
+    WindowStatements statements(transaction_, parsed_, stages_, clouds_, changes_, maps, now_);
     for (; attempt_ < kMaxAttempts && !statements.needsWholeMap(); ++attempt_) {
       if (check_) check_(0);
       noteChanged(statements.tiles());
@@ -146,8 +146,8 @@ class LocalUpdate {
       if (!isTooSmall(lacking, window)) needs_whole_map_ = true;
       return std::nullopt;
     }
-    if (!statements.apply(window, change, *decision)) return std::nullopt;
     if (strip_ != nullptr) addWideRecords(*decision);
+    if (!statements.apply(window, change, *decision)) return std::nullopt;
     const std::vector<std::uint32_t> former = formerNumbers(window, stages_, former_summaries_);
     std::vector<rules::SemanticObject> wide = wideObjectsIn(transaction_, window, *decision, former);
     needs_whole_map_ = (strip_ == nullptr && changesWideObjects(window, *decision, wide)) ||

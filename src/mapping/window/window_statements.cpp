@@ -6,7 +6,10 @@
 
 #include "mapping/clouds/scan_store.hpp"
 #include "mapping/facts/object_geometry.hpp"
-#include "mapping/layers/wide_tile.hpp"
+#include "mapping/layers/stored_layers.hpp"
+#include "mapping/thing_history.hpp"
+#include "rdf/map_iris.hpp"
+#include "rules/objects/finished_objects.hpp"
 
 namespace cluxel::mapping {
 
@@ -90,13 +93,11 @@ struct WindowStatements::Touched {
 
 WindowStatements::WindowStatements(const rdf::ReadTransaction& transaction, const ParsedInputs& parsed,
                                    TileStages& stages, const std::vector<Cloud>& clouds, const OutputChanges& changes,
-                                   const TileSet& map_tiles, const std::vector<SemanticState>& before,
-                                   const SemanticState& now)
-    : transaction_(transaction), parsed_(parsed), stages_(stages), clouds_(clouds), map_(map_tiles) {
+                                   const std::vector<SemanticState>& before, const SemanticState& now)
+    : transaction_(transaction), parsed_(parsed), stages_(stages), clouds_(clouds) {
   const Former statements_before(before, now);
   if (statements_before.known.empty() && now.statements.empty()) return;
   statements_ = storedStatements(rdf::QuadReader(transaction));
-  near_change_ = perception::grown(changes.tiles);
   records_ = overruledRecords(transaction);
   const StatementTiles former = storedStatementTiles(transaction);
   const TileSet map = perception::unionOf(storedTiles(transaction), changes.tiles);
@@ -104,6 +105,10 @@ WindowStatements::WindowStatements(const rdf::ReadTransaction& transaction, cons
   TileSet concerned;
   for (const Statement& statement : statements_) {
     const ContentHash id = statement.id();
+    if (!statement.class_iri.empty()) {
+      places_[id] = {};
+      continue;
+    }
     const auto known = former.find(id);
     bool is_changed = known == former.end() || statements_before.isOther(statement);
     const bool is_region = statement.kind == StatementKind::IgnoreRegion;
@@ -117,6 +122,7 @@ WindowStatements::WindowStatements(const rdf::ReadTransaction& transaction, cons
   for (const ContentHash& id : statements_before.known) {
     if (places_.contains(id)) continue;
     withdrawn_.push_back(id);
+    needs_whole_map_ = needs_whole_map_ || saysOfWideObject(id);
     if (const auto known = former.find(id); known != former.end())
       concerned.insert(known->second.begin(), known->second.end());
   }
@@ -180,28 +186,48 @@ bool WindowStatements::apply(const MapWindow& window, const WindowChange& change
   std::vector<Statement> about;
   std::copy_if(statements_.begin(), statements_.end(), std::back_inserter(about),
                [&](const Statement& statement) { return concerned_.contains(statement.id()); });
-  if (std::any_of(about.begin(), about.end(),
-                  [&](const Statement& statement) { return mayTakeWideObject(statement, window); }))
-    needs_whole_map_ = true;
   if (needs_whole_map_) return false;
   PointOwners owners(transaction_, stages_, parsed_.model.perception.thin, clouds_);
   applied_ = applyStatements(about, decision.objects, window.scene, parsed_.rules.catalogue, owners, clouds_);
   if (!changesWholeObjects(window, decision)) return false;
   decision.objects = std::move(applied_.objects);
+  addAboutWideObjects();
   return true;
 }
 
-/// Whether all of each object that a statement changes is decided anew, and none is of a whole class.
+/// What is stated of class-wide objects is told with each window, because their facts are made anew there. Whether
+/// there is such an object does not change with a window.
+void WindowStatements::addAboutWideObjects() {
+  for (const Statement& statement : statements_) {
+    if (statement.class_iri.empty()) continue;
+    StatementOutcome outcome{statement, StatementEffect::Dormant, std::nullopt, "", false};
+    const ContentHash object = rules::idOfClassWide(statement.class_iri);
+    if (storedRecord(transaction_, object)) {
+      outcome.effect = StatementEffect::Applied;
+      outcome.object = object;
+      outcome.rules_class = statement.class_iri;
+    }
+    applied_.outcomes.push_back(std::move(outcome));
+  }
+}
+
+/// Whether a withdrawn statement was about a class-wide object, of which what it said has to be removed.
+bool WindowStatements::saysOfWideObject(const ContentHash& id) const {
+  const rdf::QuadReader quads(transaction_);
+  for (const Quad& quad : quadsAbout(quads, rdf::iriOfStatement(id), rdf::vocabulary::kGraphObserved)) {
+    if (quad.predicate.text != rdf::vocabulary::clx("appliesTo")) continue;
+    const auto object = hashIn(quad.object.text, "object");
+    const auto record = object ? storedRecord(transaction_, *object) : std::nullopt;
+    if (record && record->is_class_wide) return true;
+  }
+  return false;
+}
+
+/// Whether all of each object that a statement changes is decided anew.
 bool WindowStatements::changesWholeObjects(const MapWindow& window, const WindowDecision& decision) {
   const perception::SceneCluxels& all = window.scene.cluxels;
-  for (const rules::SemanticObject& object : decision.objects) {
-    if (!object.is_class_wide) continue;
-    const auto is_about = [&](const StatementOutcome& outcome) { return outcome.object == object.id; };
-    if (std::any_of(applied_.outcomes.begin(), applied_.outcomes.end(), is_about)) needs_whole_map_ = true;
-  }
   TileSet more;
   for (const OverruledObject& overruled : applied_.overruled) {
-    if (overruled.by_rules.is_class_wide) needs_whole_map_ = true;
     const std::vector<std::uint32_t> members = cluxelsOf(overruled.by_rules);
     if (std::all_of(members.begin(), members.end(),
                     [&](auto cluxel) { return decision.is_decided[all.primitive[cluxel]] != 0; }))
@@ -210,32 +236,6 @@ bool WindowStatements::changesWholeObjects(const MapWindow& window, const Window
   }
   grow(more);
   return !needs_whole_map_ && more.empty();
-}
-
-/// Whether most points of an object of a whole class may lie in a region. Of tiles near a change all points count
-/// against it; elsewhere such objects hold what they held before. Tiles that do not count could only add to the object.
-bool WindowStatements::mayTakeWideObject(const Statement& region, const MapWindow& window) const {
-  if (region.kind != StatementKind::IgnoreRegion) return false;
-  const TileSet& inside = places_.at(region.id());
-  std::uint64_t unsure = 0;
-  const perception::SceneCluxels& all = window.scene.cluxels;
-  for (std::uint32_t c = 0; c < all.size(); ++c)
-    if (near_change_.contains(all.name[c].tile) && inside.contains(all.name[c].tile)) unsure += all.point_count[c];
-  struct Points {
-    std::uint64_t inside = 0, all = 0;
-  };
-  std::map<ContentHash, Points> points;
-  for (const WideTile& tile : storedWideTiles(transaction_)) {
-    if (near_change_.contains(tile.key) || !map_.contains(tile.key)) continue;
-    for (const WidePart& part : tile.parts) {
-      Points& own = points[part.object];
-      own.all += part.sums.point_count;
-      if (inside.contains(tile.key)) own.inside += part.sums.point_count;
-    }
-  }
-  if (points.empty()) return true;
-  return std::any_of(points.begin(), points.end(),
-                     [&](const auto& object) { return 2 * (object.second.inside + unsure) > object.second.all; });
 }
 
 std::vector<ContentHash> WindowStatements::exchanged() const {

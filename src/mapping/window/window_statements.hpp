@@ -19,10 +19,10 @@ namespace cluxel::mapping {
 
 class WindowStatements {
  public:
-  /// `map`: the tiles that count. `before`: the map as it was, or the maps that were joined; a statement of one may be
+  /// `before`: the map as it was, or the maps that were joined; a statement of one may be
   /// about what another has. `now`: the clouds and statements that there are. The references must outlive it.
   WindowStatements(const rdf::ReadTransaction& transaction, const ParsedInputs& parsed, TileStages& stages,
-                   const std::vector<Cloud>& clouds, const OutputChanges& changes, const perception::TileSet& map,
+                   const std::vector<Cloud>& clouds, const OutputChanges& changes,
                    const std::vector<SemanticState>& before, const SemanticState& now);
 
   /// The tiles in which all has to be decided anew because of statements; they count as changed.
@@ -31,7 +31,7 @@ class WindowStatements {
   /// Applies the statements that `decision` concerns, and puts the objects that follow into it. False when more has to
   /// be decided anew: then tiles() has grown, or needsWholeMap() holds.
   bool apply(const MapWindow& window, const WindowChange& change, WindowDecision& decision);
-  /// A statement is, or may be, about an object of a whole class.
+  /// More tiles do not help, or what a withdrawn statement said of a class-wide object has to be removed.
   bool needsWholeMap() const { return needs_whole_map_; }
 
   /// After apply().
@@ -48,18 +48,17 @@ class WindowStatements {
   bool concernsMixed(const MapWindow& window, const WindowChange& change, const WindowDecision& decision,
                      const Touched& touched);
   bool changesWholeObjects(const MapWindow& window, const WindowDecision& decision);
-  bool mayTakeWideObject(const Statement& region, const MapWindow& window) const;
+  void addAboutWideObjects();
+  bool saysOfWideObject(const ContentHash& id) const;
 
   const rdf::ReadTransaction& transaction_;
   const ParsedInputs& parsed_;
   TileStages& stages_;
   const std::vector<Cloud>& clouds_;
-  const perception::TileSet& map_;
   std::vector<Statement> statements_;  ///< ascending by id
   std::vector<ContentHash> withdrawn_;
   StatementTiles places_;                 ///< of the statements that there are
   std::vector<OverruledRecord> records_;  ///< as stored
-  perception::TileSet near_change_;       ///< tiles that changed, and those around
   perception::TileSet tiles_;
   std::set<ContentHash> concerned_;  ///< statements of which all points lie in tiles_
   std::set<ContentHash> erased_;     ///< records
