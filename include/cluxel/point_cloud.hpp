@@ -40,7 +40,7 @@ struct Cloud {
   std::string id;  ///< 32 hexadecimal digits, the hash of what was measured
   std::string iri;
   std::string source;                     ///< the file it was read from
-  std::optional<double> time_s;           ///< since the epoch of the recording; absent when not recorded
+  std::optional<double> time_s;           ///< seconds since 1970-01-01 UTC; absent when the scan has no time
   bool has_pose = false;                  ///< false: its points were given in the map frame
   std::array<double, 16> T_map_sensor{};  ///< pose of the sensor in the map, 4x4 row by row, translation in metres
   std::uint64_t point_count = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bands of tiles: more points than memory should hold go through the stages band by band, and nothing is computed
-// twice.
+// Bands of tiles: points that do not fit in memory at once go through the stages band by band. Each stage stores each
+// tile once.
 #pragma once
 
 #include <array>
@@ -30,7 +30,7 @@ inline std::int32_t rowOf(const TileKey& key, Axis axis) {
   return axis == Axis::X ? key.x : key.y;
 }
 
-/// Behind all rows.
+/// After the last row.
 inline constexpr std::int64_t kEndOfRows = std::numeric_limits<std::int64_t>::max();
 
 struct PointBand {

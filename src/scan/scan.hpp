@@ -32,7 +32,7 @@ struct ScanPoints {
 
 struct Scan {
   ScanPoints points;
-  std::optional<double> time_s;  ///< seconds since the epoch of the recording
+  std::optional<double> time_s;  ///< seconds since 1970-01-01 UTC; absent when the scan has no time
   Eigen::Isometry3d T_map_sensor = Eigen::Isometry3d::Identity();
   bool has_pose = false;  ///< false: points are taken as given in the map frame, no sensor origin
   std::string source;     ///< the file it was read from, for messages

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// A lock file: at most one process builds or compacts a map.
+// A lock file: at most one process builds, changes, merges or compacts a map.
 #pragma once
 
 #include <filesystem>
 
 namespace cluxel::mapping {
 
-/// Held for a whole build, and while a map is compacted in place. The lock is on the file `MAP.build-lock`, which is
-/// removed at the end; that of a killed process does not block others. Readers, and updates of a finished map, are not
-/// blocked.
+/// Held by build, extend, retract, repose, state, rules apply, merge (on its output) and compact in place, from start
+/// to end. The lock is on `MAP.build-lock`, which is removed at the end. A lock file of a killed process blocks nobody.
+/// Readers, `update` and `load` do not take it.
 class BuildLock {
  public:
   /// Never waits: throws Error (StoreUnavailable), naming the process that holds the lock.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Builds a map file from scans, batch by batch; every commit is the exact map of the scans so far.
+// Builds a map file from scans, batch by batch. After every commit, readers see the exact map of the scans so far.
 #pragma once
 
 #include <cstddef>
@@ -19,7 +19,7 @@ namespace cluxel::mapping {
 struct BuildParams {
   unsigned threads = 1;
   std::uint64_t batch_points = kBatchPoints;  ///< a batch of scans is committed when it holds this many points
-  std::uint64_t stage_points = kStagePoints;  ///< a batch with more goes through the stages in bands
+  std::uint64_t stage_points = kStagePoints;  ///< batches of more than 1.5 times as many go through the stages in bands
   bool force = false;                         ///< replace a finished map
   bool refine_poses = false;  ///< register the scans first (registerPoses()); otherwise poses that do not fit are noted
   bool drop_statements = false;       ///< with `force`: drop the operator's statements of the old map

@@ -15,7 +15,7 @@
 
 namespace cluxel::mapping {
 
-/// Batches with more points go through the stages in parts: their memory follows this number, not the batch.
+/// Batches of more than one and a half times as many points go through the stages in bands. Memory follows this number.
 inline constexpr std::uint64_t kStagePoints = 6'000'000;
 
 /// What TileStages keeps in memory when the scene is assembled.
@@ -34,7 +34,8 @@ struct OutputChanges {
 /// `model` and `params` must outlive it.
 class TileStages {
  public:
-  /// What has more than `max_points` points goes through the stages in bands.
+  /// What has more than 1.5 times `max_points` points goes through the stages in bands. Each band but the last has half
+  /// of `max_points` points or more.
   TileStages(const perception::LabelModel& model, const MapParams& params, Keep keep = Keep::All,
              std::uint64_t max_points = kStagePoints)
       : params_{params.labelling, params.component, params.contact, params.relation},

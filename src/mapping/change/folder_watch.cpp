@@ -72,7 +72,7 @@ class Watch {
   }
 
  private:
-  /// True when scans were added.
+  /// Looks at the folder once. True when scans were added or moved.
   bool look(const FolderState& before, const FolderState& now) {
     if (now.empty()) return false;
     std::optional<scan::ScanSet> scans;

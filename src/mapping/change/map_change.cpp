@@ -153,8 +153,8 @@ TileSet tilesBelow(const Cloud& cloud) {
   return tiles;
 }
 
-/// The points of a batch of moves. All of them at once, where batches would compute most tiles more than twice: as
-/// where all scans see the same place.
+/// The batch size of a move, in points. All moves are one batch when batches would compute each tile more than twice on
+/// average, for instance when all scans see the same place.
 std::uint64_t batchSizeOf(const std::vector<Move>& moves, const rdf::ReadTransaction& transaction,
                           std::uint64_t max_points) {
   std::uint64_t points = 0, map_points = 0, batch_points = 0;

@@ -20,9 +20,9 @@ namespace cluxel::mapping {
 /// manifest names another map origin or coordinate system than the map's, or when they are in outer coordinates.
 void requireFrame(const MapInputs& map, const scan::ScanSet& scans);
 
-/// Adds scans, batch by batch; each commit is the exact map of the scans so far, so that a killed run goes on when it
-/// is repeated. Scans that are there with the same pose are passed over. Throws InputError for a scan that is there
-/// with another pose, or whose manifest names another map origin or coordinate system than the map's.
+/// Adds scans, batch by batch. After each commit, readers see the exact map of the scans so far, so that a killed run
+/// continues when it is repeated. Scans that are there with the same pose are passed over. Throws InputError for a scan
+/// that is there with another pose, or whose manifest names another map origin or coordinate system than the map's.
 ChangeReport extendMap(const std::filesystem::path& file, const scan::ScanSet& scans, const ChangeParams& params,
                        ProgressSink& sink);
 
@@ -54,8 +54,8 @@ struct ScanPose {
   scan::ScanId scan;
   Eigen::Isometry3d T_map_sensor = Eigen::Isometry3d::Identity();
 };
-/// Gives scans other poses, batch by batch from place to place; each commit is the exact map of the poses that the
-/// scans have then, so that a killed run goes on when it is repeated. Throws Error: NotFound for an unknown scan,
+/// Gives scans other poses, batch by batch from place to place. After each commit, readers see the exact map of the
+/// poses so far, so that a killed run continues when it is repeated. Throws Error: NotFound for an unknown scan,
 /// InvalidArgument for a scan that is named twice.
 ChangeReport moveScans(const std::filesystem::path& file, const std::vector<ScanPose>& poses,
                        const ChangeParams& params, ProgressSink& sink);

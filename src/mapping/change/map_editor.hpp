@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A finished map opened for changes of its inputs. Every commit is the exact map of the changed inputs.
+// A finished map opened for changes of its inputs. After every commit, readers see the exact map of them.
 #pragma once
 
 #include <sys/types.h>
@@ -29,7 +29,7 @@ struct ChangeParams {
   /// where they move or maps are merged.
   std::optional<std::uint64_t> batch_points = {};
   bool dry_run = false;                       ///< compute what would change, and write nothing
-  std::uint64_t stage_points = kStagePoints;  ///< a batch with more goes through the stages in bands
+  std::uint64_t stage_points = kStagePoints;  ///< batches of more than 1.5 times as many go through the stages in bands
   bool may_compact = true;                    ///< rewrite the map when the change leaves much free space
   double max_window_share = UpdateParams{}.max_window_share;  ///< this and the next as in UpdateParams
   std::uint64_t whole_cluxels = UpdateParams{}.whole_cluxels;

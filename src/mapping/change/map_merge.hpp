@@ -32,9 +32,9 @@ struct MergeParams {
 /// statements of all maps are kept, but those that one of them has withdrawn since. The result appears under its name
 /// when it is complete; a killed merge leaves TARGET.merging, which the next one removes. Without `force` a target that
 /// is the merge of these maps already, their history included, is left as it is, with a note. Throws Error
-/// (InvalidArgument) for any other file there, and when inputs, map origin or coordinate system differ, a scan has two
-/// poses, or a file is named twice. With `dry_run` the work is done on a copy beside TARGET, or in the folder
-/// for temporary files when nothing may be written there; it is removed.
+/// (InvalidArgument) for any other file there, when inputs, map origin or coordinate system differ, or a file is named
+/// twice; InputError when a scan has two poses. With `dry_run` the work is done on a copy beside TARGET, or in the
+/// folder for temporary files when nothing may be written there; it is removed.
 ChangeReport mergeMaps(const std::vector<MapToMerge>& maps, const std::filesystem::path& target,
                        const MergeParams& params, ProgressSink& sink);
 

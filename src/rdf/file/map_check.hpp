@@ -21,8 +21,9 @@ struct MapCheck {
 };
 
 /// Verifies the structure of all pages, the checksum of every block, every term and its entry in the hash index, and
-/// that the four indexes contain the same quads of known terms, and the index of geometries those of the map. Does not
-/// crash on a damaged file. Throws Error (StoreUnavailable) when there is no map. Cost: reads the whole file.
+/// that each index holds exactly the quads that belong in it, all of known terms, and that the index of geometries fits
+/// the map. Does not crash on a damaged file. Throws Error (StoreUnavailable) when there is no map. Cost: reads the
+/// whole file.
 MapCheck checkMap(const std::filesystem::path& file);
 
 /// True when the file begins with an LMDB meta page. Cost: one page read.
