@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rows of tiles.
+// Orders tiles by row, and finds those that a stage may compute.
 #include "perception/point_bands.hpp"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rows of tiles are full when they have enough points.
+// Ends a band when its rows have enough points, and unpacks the scans that reach into it.
 #include "mapping/build/scan_bands.hpp"
 
 #include <utility>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tells whether stored data are of the present commit: a program that does not know them leaves their stamp behind when
-// it commits a change.
+// Commit stamps mark data that must be updated with every commit. An earlier program that does not know the data does
+// not renew the stamp, so a stale stamp shows that the data are out of date.
 #pragma once
 
 #include <string_view>
@@ -9,9 +9,9 @@
 
 namespace cluxel::rdf {
 
-/// Says that what goes by this name is of the commit that the transaction will make.
+/// Stamps the data `name` with the commit that the transaction will make.
 void stampCommit(WriteTransaction& transaction, std::string_view name);
-/// Whether it is of the commit that the transaction sees, or has been stamped in it.
+/// Whether the data `name` have the stamp of the commit that the transaction sees, or were stamped in it.
 bool hasStamp(const ReadTransaction& transaction, std::string_view name);
 /// For copies of all blocks of a commit: the stamps of that commit are of the copy, and no other ones are.
 void carryStamps(const ReadTransaction& from, WriteTransaction& to);

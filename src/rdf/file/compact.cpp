@@ -95,7 +95,7 @@ void copyMainRecords(const ReadTransaction::Impl& from, const ReadTransaction::I
 
 void copyAll(const ReadTransaction& from, Environment& to) {
   CopyTarget target(to);
-  target.impl().environment->startCopyOf(*from.impl().environment);  // the first commit was of the newest
+  target.impl().environment->startCopyOf(*from.impl().environment);  // the new file was created in the newest format
   for (const Table index : target.impl().environment->indexes()) copyIndex(from.impl(), target, index);
   // The long blocks last: LMDB searches all pages of a transaction at each write.
   for (const Table table : {Table::Terms, Table::Blocks}) copyTable(from.impl(), target, table);
@@ -151,7 +151,7 @@ void verifyBlocks(const ReadTransaction::Impl& from) {
   if (code != MDB_NOTFOUND) from.check(code, "read a table");
 }
 
-/// What a file knows of its commits has their numbers, and the copy begins to count anew.
+/// Some records carry the number of their commit. A copy counts its commits anew, so these records are written again.
 void renumber(const ReadTransaction& from, const StoreSums& sums, const fs::path& target) {
   const auto copy = std::dynamic_pointer_cast<LmdbEnvironment>(Environment::open(target, OpenMode::ReadWrite));
   copy->startWithPagesOf(*from.impl().environment, sums);

@@ -12,7 +12,8 @@
 
 namespace cluxel::rdf {
 
-/// Create: the file must not exist yet. Fill: as ReadWrite, but an empty file becomes a map, which the others refuse.
+/// Create: the file must not exist yet. Fill: as ReadWrite, and an empty file is accepted and becomes a map. ReadOnly
+/// and ReadWrite refuse an empty file.
 enum class OpenMode { ReadOnly, ReadWrite, Create, Fill };
 
 class ReadTransaction;
@@ -35,7 +36,8 @@ class Environment : public std::enable_shared_from_this<Environment> {
 
   /// Opens a snapshot, for use by one thread at a time. Cost: microseconds.
   virtual ReadTransaction read() const = 0;
-  /// Starts the write transaction. Waits for another writer of this process; throws when another process is writing.
+  /// Starts the write transaction. Waits for another writer of this process. Throws MapBusy when another process writes
+  /// for more than 1.5 s.
   virtual WriteTransaction write() = 0;
   virtual const std::filesystem::path& file() const = 0;
   /// Writes a copy without free pages to `target`, which must not be there.

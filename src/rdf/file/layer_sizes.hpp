@@ -22,12 +22,12 @@ struct LayerSize {
 /// read, and the indexes are compared with their sums.
 std::vector<LayerSize> layerSizes(const ReadTransaction& transaction);
 
-/// What a rewrite of the file would free: free pages, and the space that the pages of indexes leave. Cost: the list of
-/// free pages is read.
 struct FreeSpace {
-  std::uint64_t bytes = 0, file_bytes = 0;  ///< and the part of the file that the commit knows
-  std::uint64_t in_free_pages = 0;          ///< of `bytes`
+  std::uint64_t bytes = 0;          ///< that a rewrite would free
+  std::uint64_t file_bytes = 0;     ///< size of the file up to the last page of the commit
+  std::uint64_t in_free_pages = 0;  ///< the share of `bytes` in free pages; the rest lies in half-filled index pages
 };
+/// Cost: the list of free pages is read.
 FreeSpace freeSpaceOf(const ReadTransaction& transaction);
 
 }  // namespace cluxel::rdf

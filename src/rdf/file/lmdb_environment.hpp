@@ -93,7 +93,7 @@ class LmdbEnvironment final : public Environment {
     format_ = other.format_.load();
     is_copy_ = true;
   }
-  /// The same for a file that has the pages of a commit with these sums: the next commit numbers them.
+  /// For a page-by-page copy of `other`: the first commit stores `sums` under its own number.
   void startWithPagesOf(const LmdbEnvironment& other, const StoreSums& sums);
   /// True for the last commit of this process: what it read was verified, so what it wrote need not be.
   bool wrote(std::size_t transaction_id) const { return own_commit_ == transaction_id; }

@@ -15,14 +15,14 @@
 
 namespace cluxel::rdf {
 
-/// Guards the directories of one index: that of a commit, and those of a write transaction that began with it, whose
-/// pages hold what the commit held between the same keys and what the transaction wrote. Thread-safe.
+/// Checks one index of a commit. Also serves write transactions that began with this commit: their pages hold the same
+/// keys, but for those that they added or removed. Thread-safe.
 class PageGuard {
  public:
   /// `pages`: the directory of the commit, without a guard.
   PageGuard(const PageMap& map, PageDirectory pages, RangeSums ranges, Table index, std::filesystem::path file);
 
-  /// Takes over what was compared of an earlier commit, when all commits since are of this process.
+  /// Takes over the checks done for an earlier commit. Only valid when this process made all commits since.
   void inherit(const PageGuard& earlier);
   /// The pages of the commit without comparison, for estimates.
   const PageDirectory& pages() const { return pages_; }

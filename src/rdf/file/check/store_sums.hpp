@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The number and a hash of all quads, of all entries of the index of terms, and of each 64 terms. They tell a changed
-// bit from a whole map, and change with every insertion and removal at the cost of one hash.
+// Counts and hashes of all quads, of the index of terms, and of each group of 64 terms. They reveal damage, and an
+// insertion or removal updates them at the cost of one hash.
 #pragma once
 
 #include <cstdint>
@@ -124,7 +124,7 @@ class TermSumWriter {
 
  private:
   WriteTransaction& transaction_;
-  std::map<TermId, std::uint64_t> sums_;  ///< of new terms, by the number of their 64
+  std::map<TermId, std::uint64_t> sums_;  ///< of new terms, by group of 64
 };
 
 /// The stored sums of all terms up to `terms`. Throws Error (StoreUnavailable) when some are missing.
