@@ -9,10 +9,10 @@
 
 namespace cluxel::mapping {
 
-/// Rewrites a map without free pages, nor half-filled ones if `pages` are filled, and replaces it by a rename. Readers
-/// go on with the old file. The new file has the owner, group and rights of the old one. Takes the build lock; other
-/// writers wait or are refused. Throws Error (StoreUnavailable) when the map is damaged or cannot be written; it is
-/// then as before.
+/// Rewrites a map without free pages, and with full index pages when `pages` is Filled. The copy replaces it by a
+/// rename. Readers continue with the old file. The new file has the owner, group and rights of the old one. Takes the
+/// build lock; other writers wait or are refused. Throws Error (StoreUnavailable) when the map is damaged or cannot be
+/// written; it is then as before.
 void compactMap(const std::filesystem::path& map, rdf::CopiedPages pages = rdf::CopiedPages::Filled);
 
 /// Writes the same to a file that is not there yet; the map is only read. What a killed command left is not copied.
@@ -20,9 +20,10 @@ void compactMap(const std::filesystem::path& map, rdf::CopiedPages pages = rdf::
 /// may be left then.
 void copyCompacted(const std::filesystem::path& map, const std::filesystem::path& copy);
 
-/// A finished map is made small, and what was retracted leaves the file. After other changes free pages may stay: the
-/// next change writes into them, and a rewrite after each would cost more than the change itself.
-inline constexpr double kMaxFreeShare = 0.05, kMaxFreeShareOfChanged = 0.25;
+/// After a build or a merge.
+inline constexpr double kMaxFreeShare = 0.05;
+/// After a change: the next change uses the free pages, and a rewrite after each would cost more than the change.
+inline constexpr double kMaxFreeShareOfChanged = 0.25;
 
 /// Compacts a map when that frees more than this share of it, and more than a mebibyte. So the cost follows the
 /// changes that left the space. Pages of indexes are filled when that alone would free as much. Where it fails, the map

@@ -18,14 +18,14 @@
 
 namespace cluxel::mapping {
 
-/// Tells of an object that is not given whether it was there before a change and is after it.
+/// Whether an object that is not listed exists both before and after the change.
 using GoesOn = std::function<bool(const ContentHash& object)>;
 
-/// Hands the names on from the objects before a change to those after it, and records splits, joins and ends. The part
-/// with most shared members keeps a name (ties: the smallest hash). A join keeps the older name, then the smaller. An
-/// object that comes back as it was gets its former name, if no other has it. A new thing is named by the hash of its
-/// first object. `time` is an xsd:dateTime. Of one map, objects that are the same before and after need not be given
-/// when `goes_on` knows them. Cost: that of the objects given and of their history.
+/// Gives each object after a change its thing, and records splits, joins and ends. The part with most shared members
+/// keeps a name (ties: the smallest hash). A join keeps the older name, then the smaller. An object that comes back as
+/// it was gets its former name, if no other has it. A new thing is named by the hash of its first object. `time` is an
+/// xsd:dateTime. Of one map, objects that are the same before and after need not be given when `goes_on` knows them.
+/// Cost: that of the objects given and of their history.
 void writeThings(rdf::WriteTransaction& transaction, const std::string& time, const std::vector<ObjectMembers>& before,
                  const std::vector<ObjectMembers>& after, ObjectsOf objects_of = ObjectsOf::OneMap,
                  const GoesOn& goes_on = {});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the cluxels of objects were: more scans of a place draw other seed points, and only the place tells what goes
-// on.
+// Where the cluxels of objects are: with more scans other points of a place become seeds, and only the place tells
+// which object continues which.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -32,10 +32,10 @@ struct SharedMembers {
   bool is_by_place = false;  ///< the seeds alone would be too few
 };
 
-/// For each object, which of the others hold its members, ascending: by seed point or, where no other object has the
-/// seed, the one with the nearest member within kSamePlace_m. Equally near: the one with the smallest id. Members of
-/// the others whose seed one of the objects has are not near to anything, if the objects are of one map. Of several
-/// members that lie nearest to the same one, one counts. Cost: linear in the members.
+/// For each object, the members that it shares with each of the others, ascending. A member is shared by its seed; if
+/// none of the others has the seed, with the nearest member within kSamePlace_m (ties: the smallest id).
+/// ObjectsOf::OneMap: a member of the others whose seed one of `objects` has is no candidate. A candidate counts once
+/// per object. Cost: linear in the members.
 std::vector<std::vector<SharedMembers>> sharedBySeedOrPlace(const ObjectList& objects, ObjectsOf objects_of,
                                                             const ObjectList& others);
 

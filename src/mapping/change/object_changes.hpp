@@ -25,8 +25,8 @@ struct ObjectMembers {
   ContentHash id;
   std::string class_iri;
   std::vector<std::uint64_t> seeds;  ///< hashes of (scan, point), in no order
-  /// Of the cluxels, in the order of the seeds. kNoMemberPlace where a change leaves the cluxels of a tile as they are,
-  /// and empty where it leaves them all do; of objects of a whole class, which go on by their name.
+  /// One place per seed. kNoMemberPlace: the change leaves the tile of this cluxel as it is. Empty when this holds for
+  /// all its tiles, and for class-wide objects, which are matched by name.
   std::vector<MemberPlace> places = {};
 
   MemberPlace placeOf(std::size_t member) const { return places.empty() ? kNoMemberPlace : places[member]; }

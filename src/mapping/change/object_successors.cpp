@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// By name and seeds first; places may mistake what stands close together.
+// Matches by name and seeds first, then by place, because places may confuse objects that stand close together.
 #include "mapping/change/object_successors.hpp"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Layers number cluxels as the summaries of the same commit do.
+// Collects members tile by tile. A stored layer uses the cluxel numbers of the summary of its own commit.
 #include "mapping/window/former_objects.hpp"
 
 #include "mapping/damaged_map.hpp"

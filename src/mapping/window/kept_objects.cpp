@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Undecided cluxels belong to what they belonged to.
+// Finds the owners of cluxels after a change: undecided cluxels keep their former owner.
 #include "mapping/window/kept_objects.hpp"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Everything that reaches from the tiles of one map into those of the other meets the seam.
+// Copies what the lender decided outside the border, and marks the border as changed.
 #include "mapping/window/lent_decisions.hpp"
 
 #include <algorithm>
@@ -177,8 +177,7 @@ void LentDecisions::lendRecord(const ContentHash& id, const ObjectRecord& record
   transaction_.putBlock(tables::kObjects, tables::keyOf(id), toBytes(now));
 }
 
-/// An object that lies in common tiles alone has a row of the map, if any: it is told anew. A run over the whole map
-/// replaces all of these rows.
+/// Takes only rows of objects with lent tiles. Objects in common tiles alone are decided anew.
 void LentDecisions::lendStatements() {
   for (const OverruledRecord& record : overruledRecords(lender_)) {
     const TileSet tiles = tilesOf(record);

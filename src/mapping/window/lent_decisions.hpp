@@ -33,7 +33,8 @@ class LentDecisions {
   /// Gives the map all but the facts. `changes` then tells what differs from the map of each tile. Cost: that of
   /// copying the blocks, and some 10 us for each object and tile of the lender.
   void lend(OutputChanges& changes, TileStages& stages);
-  /// Removes what was lent. Ways stay, which follow from the tiles alone, and what a run over the whole map replaces.
+  /// Removes the lent layers, margins and records. Ways stay, because they follow from the tiles alone. Statement rows
+  /// stay, because a run over the whole map replaces them.
   void takeBack();
   /// Adds the lender's facts about what was lent. Returns the ground patches (IRIs) that nothing may touch any more.
   /// Cost: some 2 us a fact.

@@ -17,7 +17,7 @@ struct NotLent {
   std::set<ContentHash> wide;  ///< objects of whole classes: of these only their other primitives are copied
 };
 
-/// Facts about ways are never copied.
+/// Copies the facts of a lender, without facts about ways.
 class LentFacts {
  public:
   LentFacts(const rdf::ReadTransaction& lender, const NotLent& not_lent);

@@ -24,23 +24,22 @@ struct LayerWork {
   const rdf::InferenceCheck& check;
 };
 
-/// A map of which everything is decided anew, or to which many tiles are added, shows these strip by strip. What is not
-/// shown does not count.
+/// One step of a change that is decided strip by strip. Only the tiles in `shown` take part.
 struct MapStrip {
   perception::TileSet shown;             ///< the tiles of this strip and of those before
   perception::TileSet anew;              ///< this strip, and what lies beside it: everything there counts as new
-  RetiredThings retired;                 ///< what former layers of the strip name, and no strip has made again
+  RetiredThings retired;                 ///< in the former layers of the strip, and not made again so far
   std::vector<SeenCloud> told_clouds;    ///< as the facts have them
-  std::set<ContentHash> wide;            ///< objects of whole classes that the map had
+  std::set<ContentHash> wide;            ///< class-wide objects that the map had
   rules::KnownSplits* splits = nullptr;  ///< may be absent
   perception::TileSet as_before;         ///< tiles that count as they were; their cluxels may get other seeds
   bool keeps_lists = false;              ///< SemanticUpdate tells the objects that differ
   LaterTargets* later = nullptr;         ///< gets the objects that were made: rays are looked at after all strips
 };
 
-/// Decides in a window around the changed tiles and writes all that follows; of a strip (else null) all but inference
-/// and what rays tell. `lent`: what another map decided, or null. Absent when the whole map has to be computed; then no
-/// decision was written.
+/// Decides a window around the changed tiles and writes layers and facts. With `strip` (else null), inference and
+/// presence are left to the caller. `lent`: decisions of another map, or null. `changes` gets the tiles in which
+/// statements require a new decision. Absent, with no decision written, when the whole map has to be computed.
 std::optional<SemanticUpdate> updateAround(const LayerWork& work, OutputChanges& changes, ChangedInputs inputs,
                                            LentDecisions* lent, const MapStrip* strip);
 

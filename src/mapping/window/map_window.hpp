@@ -29,10 +29,10 @@ struct KnownPrimitive {
 };
 
 struct MapWindow {
-  perception::TileSet tiles;                                  ///< that are held, and those that are gone
-  perception::TileSet elsewhere;                              ///< other tiles of the map next to them
-  perception::Scene scene;                                    ///< after the change
-  std::vector<char> is_cut;                                   ///< by primitive
+  perception::TileSet tiles;      ///< that are read into `scene`, and changed tiles that the map no longer has
+  perception::TileSet elsewhere;  ///< tiles of the map next to them, which are not read
+  perception::Scene scene;        ///< after the change
+  std::vector<char> is_cut;       ///< by primitive
   std::map<perception::TileKey, std::uint32_t> first_cluxel;  ///< of each tile, in the scene
   std::map<perception::TileKey, std::vector<perception::PrimitiveIndex>> primitive_of_component;
   std::map<perception::TileKey, TileLayer> layers;  ///< before the change; tiles that are new have none

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Objects that stay as they are, and that rays of clouds pass that came or went.
+// Unchanged objects near rays of added or removed clouds: their presence has to be computed again.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -14,8 +14,8 @@
 
 namespace cluxel::mapping {
 
-/// The objects that rays in these boxes may pass, but those of whole classes: when they were there is computed anew
-/// when the clouds of the rays come or go.
+/// The objects, without class-wide ones, that rays in these boxes may pass. Their presence depends on the clouds of
+/// these rays.
 std::set<ContentHash> passedObjects(const rdf::ReadTransaction& transaction,
                                     const std::vector<Eigen::AlignedBox3d>& rays);
 

@@ -23,7 +23,7 @@ struct SemanticUpdate {
   std::vector<StatementOutcome> statements;
 };
 
-/// For writeThings(): of an object that the update does not list, whether it is there before and after.
+/// For writeThings(): whether an object that the update does not list exists before and after.
 GoesOn keptBy(const rdf::ReadTransaction& transaction, const SemanticUpdate& update);
 
 /// What may have changed since the layers were made.

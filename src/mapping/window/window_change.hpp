@@ -19,7 +19,7 @@ struct WindowChange {
 };
 
 /// `anew`: changed tiles in which every primitive counts as dirty. `reach_m`: how far decisions look. `input_of` is
-/// asked for primitives of which the window holds all that the hash is of, so that larger windows give the same.
+/// called only for primitives whose hashed inputs all lie in the window. So a larger window gives the same hash.
 WindowChange changeIn(const MapWindow& window, const OutputChanges& changes, const perception::TileSet& anew,
                       double reach_m, const InputOf& input_of);
 

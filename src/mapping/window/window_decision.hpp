@@ -17,7 +17,7 @@
 namespace cluxel::mapping {
 
 struct WindowDecision {
-  std::vector<char> is_decided;  ///< by primitive: owners and trace are those of this run, others stay as they were
+  std::vector<char> is_decided;       ///< by primitive: owners and trace are those of this run; others keep theirs
   std::vector<std::uint64_t> traces;  ///< by primitive, where it is decided
   /// All that a decided primitive belongs to, sorted by id; of class-wide objects what lies in decided primitives.
   std::vector<rules::SemanticObject> objects;
@@ -40,7 +40,7 @@ rules::LocalInput localInputOf(const MapWindow& window, const WindowChange& chan
                                const std::set<ContentHash>& lone_objects, double reach_m);
 
 /// The map's tiles beyond the window that hold, or lie within reach of, open primitives in layers around the change.
-/// None when the window is large enough to look for a seam.
+/// Empty when the window is large enough for the rules to run.
 perception::TileSet tilesBeyond(const MapWindow& window, const WindowChange& change, const OutputChanges& changes,
                                 const rdf::ReadTransaction& transaction, const std::vector<std::uint32_t>& layers);
 

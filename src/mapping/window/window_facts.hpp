@@ -18,8 +18,7 @@
 
 namespace cluxel::mapping {
 
-/// Former objects and primitives of tiles in which everything is decided anew: their facts go unless they are told
-/// again.
+/// Former objects and primitives of tiles that are decided anew. Their facts are removed unless they are written again.
 struct RetiredThings {
   std::set<ContentHash> objects, primitives;
 };
@@ -40,8 +39,8 @@ struct WindowFacts {
   bool has_other_rays = false;    ///< rays of another map pass objects that stay, though `clouds_before` has its clouds
 };
 
-/// Makes graph observed, and what is kept about presence and class-wide objects, what a computation over the whole map
-/// would make. The layers of tiles must not be written yet.
+/// Updates graph `observed` and the stored rows of presence and class-wide objects. The result is that of a computation
+/// over the whole map. Call it before the layers of tiles are written.
 void writeWindowFacts(rdf::WriteTransaction& transaction, const WindowFacts& facts);
 
 }  // namespace cluxel::mapping
