@@ -146,7 +146,8 @@ void dropEarlyCommit(const BeginBatch& begin, ProgressSink& sink) {
     eraseEarlyCommit(transaction);
     transaction.commit();
   } catch (const std::exception& error) {
-    sink.note(std::string("what the batch has written stays in the file until the next change: ") + error.what());
+    sink.note(std::string("unfinished data of this command stay in the file until the next change removes them: ") +
+              error.what());
   }
 }
 

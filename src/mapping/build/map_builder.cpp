@@ -93,8 +93,8 @@ class MapBuild {
     const std::vector<Cloud> there = storedClouds(work_.environment().read());
     if (there.empty()) return;
     requireScansOf(work_, scans_, there);
-    sink_.note("goes on with " + work_.path().string() + ": " + std::to_string(there.size()) + " of " +
-               std::to_string(scans_.size()) + " scans are there");
+    sink_.note("continues the build of " + work_.path().string() + ": " + std::to_string(there.size()) + " of " +
+               std::to_string(scans_.size()) + " scans are stored");
   }
 
   /// Detects another writer between two commits, in case it did not use the lock.

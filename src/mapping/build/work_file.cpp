@@ -113,8 +113,8 @@ void WorkFile::chooseBetween(const std::string& inputs_hash, bool force) {
   else
     throw Error(ErrorKind::InvalidArgument,
                 beside.string() +
-                    ": is left of another build, and the map that it was to replace has gone; "
-                    "rename or remove it first");
+                    ": is the result of another build, perhaps unfinished, and the map that it should replace no "
+                    "longer exists; rename it, or remove it if it is not needed");
 }
 
 WorkFile::~WorkFile() {

@@ -296,7 +296,7 @@ std::vector<scan::ScanId> cloudsNamed(const fs::path& file, std::span<const std:
       throw Error(ErrorKind::NotFound,
                   file.string() + ": has no cloud '" + name + "'" +
                       (name.find('/') != std::string::npos
-                           ? "; a path must be that of the file that was given, or as it was given then"
+                           ? "; give the path as it was given when the scan was added, or another path of the same file"
                            : ""),
                   Remedy::ListClouds);
     ids.insert(ids.end(), fitting.begin(), fitting.end());

@@ -132,8 +132,7 @@ class Merge {
 
   /// A command that was killed after it had replaced the target may be repeated.
   ChangeReport reportOfMerged() {
-    if (!isMerged())
-      throw Error(ErrorKind::InvalidArgument, target_.string() + ": is there already", Remedy::ReplaceMap);
+    if (!isMerged()) throw Error(ErrorKind::InvalidArgument, target_.string() + ": exists already", Remedy::ReplaceMap);
     sink_.note(target_.string() + ": is the merge of these maps already");
     ChangeReport report;
     const MapReader merged(target_);

@@ -84,8 +84,9 @@ sparql::UpdateReport updateMap(const std::filesystem::path& file, const std::str
   requireSomething(transaction, file);
   if (is_map && options.any_graph_writable)
     throw Error(ErrorKind::InvalidArgument, file.string() +
-                                                ": is a map, of which only the operator's statements may be "
-                                                "written; a store that no build has made is open");
+                                                ": is a map, of which only the operator's statements may be written; "
+                                                "other graphs can only be written in a store that was not made by a "
+                                                "build");
   const sparql::UpdateReport report = runUpdate(transaction, update, options);
   if (is_map && report.inserted + report.deleted > 0) {
     const rdf::FlushPoll poll(transaction, [&check] { check(0); });

@@ -20,7 +20,7 @@ std::string explain(int code, std::string_view doing) {
     case MDB_INVALID:
       return "is not a Cluxel map";
     case MDB_VERSION_MISMATCH:
-      return "was written by another data format of LMDB; `cluxel export` it with its program";
+      return "has another data format of LMDB; open it with the program that wrote it";
     case MDB_CORRUPTED:
     case MDB_PAGE_NOTFOUND:
     case MDB_PANIC:

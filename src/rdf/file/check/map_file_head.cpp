@@ -82,7 +82,7 @@ Metas readConsecutiveMetas(int descriptor) {
 
 void checkMeta(const Meta& meta, const MapFileHead& head, const std::filesystem::path& file) {
   if (meta.version != kDataVersion)
-    refuseFile(file, "was written by another data format of LMDB; open it with the program that wrote it");
+    refuseFile(file, "has another data format of LMDB; open it with the program that wrote it");
   if (meta.free_pages.pad != head.page_size || meta.last_page > kMaxBytes / head.page_size)
     refuseDamaged(file, "its head is inconsistent");
   if ((meta.free_pages.flags & kOrderFlags) != MDB_INTEGERKEY || (meta.main.flags & kOrderFlags) != 0)
