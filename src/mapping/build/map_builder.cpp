@@ -105,63 +105,70 @@ class MapBuild {
           work_.path().string() + ": another build has written to it meanwhile; wait until it has ended and run again");
   }
 
+  /// The scans since the last commit.
+  struct OpenBatch {
+    rdf::WriteTransaction transaction;
+    PointChanges changes = {};
+    std::vector<scan::ScanId> added = {};
+    std::uint64_t points = 0, points_to_commit = 0;  ///< of `added`; of those whose points are not committed yet
+    bool has_later_times = false;                    ///< of known scans
+  };
+
+  rdf::WriteTransaction beginBatch() {
+    rdf::WriteTransaction begun = work_.environment().write();
+    begun.useThreads(params_.threads);
+    requireOwn(begun);
+    return begun;
+  }
+
   /// Adds scans from `first` on until the batch is full, and commits; returns the first scan of the next batch.
   std::size_t addBatch(std::size_t first) {
     const double started_s = secondsNow();
     StageClock clock(sink_);
-    const BeginBatch begin = [&] {
-      rdf::WriteTransaction begun = work_.environment().write();
-      begun.useThreads(params_.threads);
-      requireOwn(begun);
-      return begun;
-    };
-    rdf::WriteTransaction transaction = begin();
-    eraseEarlyCommit(transaction);
-    PointChanges changes;
-    std::uint64_t batch_points = 0, points_to_commit = 0;
-    std::vector<scan::ScanId> added;
+    OpenBatch batch{beginBatch()};
+    eraseEarlyCommit(batch.transaction);
     std::size_t next = first;
-    bool has_later_times = false;  // of known scans
-    for (; next < scans_.size() && !isFull(batch_points, added.size(), scans_.size() - next, params_.batch_points);
+    for (;
+         next < scans_.size() && !isFull(batch.points, batch.added.size(), scans_.size() - next, params_.batch_points);
          ++next) {
-      ReadScan given = reader_.take(next);
-      for (const std::string& note : reading_notes_.add(given.reading)) sink_.note(note);
-      const std::uint64_t points = given.scan.cloud.point_count;
-      const scan::ScanId id = given.scan.cloud.id;
-      const std::optional<double> time_s = given.scan.cloud.time_s;
-      const std::optional<Cloud> known = storedCloud(transaction, id);
-      auto segments = storeScan(transaction, std::move(given.scan));
-      if (segments.empty()) {
-        ++report_.scans_already_there;
-        has_later_times = has_later_times || (known && time_s > known->time_s);
-      } else {
-        added.push_back(id);
-        batch_points += points, points_to_commit += points;
-      }
-      changes.add(std::move(segments), params_.stage_points);
-      changes.is_alone = !has_later_times;
-      if (changes.mayCommitEarly() && points_to_commit >= params_.stage_points) {
-        commitPoints(added, transaction, begin);
-        points_to_commit = 0;
-      }
+      store(reader_.take(next), batch);
+      commitMany(batch);
       clock.progress("scans", next + 1, scans_.size());
     }
-    if (batch_points > 0 || next == scans_.size())
-      commitBatch({transaction, begin, added}, std::move(changes), next == scans_.size(), started_s, clock);
+    if (batch.points > 0 || next == scans_.size()) commitBatch(batch, next == scans_.size(), started_s, clock);
     return next;
   }
 
-  struct OpenBatch {
-    rdf::WriteTransaction& transaction;
-    const BeginBatch& begin;
-    const std::vector<scan::ScanId>& scans;
-  };
+  void store(ReadScan given, OpenBatch& batch) {
+    for (const std::string& note : reading_notes_.add(given.reading)) sink_.note(note);
+    const std::uint64_t points = given.scan.cloud.point_count;
+    const scan::ScanId id = given.scan.cloud.id;
+    const std::optional<double> time_s = given.scan.cloud.time_s;
+    const std::optional<Cloud> known = storedCloud(batch.transaction, id);
+    auto segments = storeScan(batch.transaction, std::move(given.scan));
+    if (segments.empty()) {
+      ++report_.scans_already_there;
+      batch.has_later_times = batch.has_later_times || (known && time_s > known->time_s);
+    } else {
+      batch.added.push_back(id);
+      batch.points += points, batch.points_to_commit += points;
+    }
+    batch.changes.add(std::move(segments), params_.stage_points);
+    batch.changes.is_alone = !batch.has_later_times;
+  }
 
-  void commitBatch(const OpenBatch& batch, PointChanges changes, bool is_last, double started_s, StageClock& clock) {
+  /// Points of many scans are committed early.
+  void commitMany(OpenBatch& batch) {
+    if (!batch.changes.mayCommitEarly() || batch.points_to_commit < params_.stage_points) return;
+    commitPoints(batch.added, batch.transaction, [this] { return beginBatch(); });
+    batch.points_to_commit = 0;
+  }
+
+  void commitBatch(OpenBatch& batch, bool is_last, double started_s, StageClock& clock) {
     rdf::WriteTransaction& transaction = batch.transaction;
-    const bool commits_early = changes.mayCommitEarly();
-    stages_.update(transaction, std::move(changes), params_.threads, clock);
-    if (commits_early) commitOutputs(batch.scans, stages_.changedTiles(), transaction, batch.begin);
+    const bool commits_early = batch.changes.mayCommitEarly();
+    stages_.update(transaction, std::move(batch.changes), params_.threads, clock);
+    if (commits_early) commitOutputs(batch.added, stages_.changedTiles(), transaction, [this] { return beginBatch(); });
     stages_.dropPoints();
     returnFreeMemory();
     if (is_last) work_.takeOverStatements(transaction, params_.drop_statements, sink_);
