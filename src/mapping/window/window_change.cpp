@@ -3,6 +3,7 @@
 #include "mapping/window/window_change.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 namespace cluxel::mapping {
 
@@ -41,25 +42,25 @@ class WindowComparison {
         for (const PrimitiveIndex primitive : here->second) result_.is_dirty[primitive] = 1;
   }
 
-  /// The window lacks edges of open primitives, cut ones have names of their own, and what is related to these has
-  /// other relations: their hashes tell nothing. They count as dirty where something in or beside them changed; then
-  /// the window has to grow where they are open.
+  /// An open primitive lacks edges here, and a cut one has another name: their hashes cannot be compared, nor can those
+  /// of primitives related to a cut one. Such a primitive counts as dirty when something in it or beside it changed.
+  /// Where it is open, the window then has to grow.
   void markUnclear() {
     const std::set<PrimitiveIndex> parted = partedByChange();
-    std::vector<PrimitiveIndex> clean;
+    std::vector<PrimitiveIndex> unchanged, beside_changed;
     for (PrimitiveIndex i = 0; i < scene().primitives.size(); ++i) {
       if (!isUnclear(i)) continue;
       const bool is_new = result_.is_open[i] == 0 && !window_.known.contains(scene().primitives[i].id);
       result_.is_dirty[i] = is_new || isInChangedTile(i) || parted.contains(i) || isNearGone(i) ? 1 : 0;
-      if (result_.is_dirty[i] == 0) clean.push_back(i);
+      if (result_.is_dirty[i] == 0) unchanged.push_back(i);
     }
-    std::erase_if(clean, [&](PrimitiveIndex i) {
+    std::copy_if(unchanged.begin(), unchanged.end(), std::back_inserter(beside_changed), [&](PrimitiveIndex i) {
       const auto relations = scene().relationsOf(i);
-      return std::none_of(relations.begin(), relations.end(), [&](const perception::Relation& relation) {
+      return std::any_of(relations.begin(), relations.end(), [&](const perception::Relation& relation) {
         return relation.to != i && result_.is_dirty[relation.to] != 0;
       });
     });
-    for (const PrimitiveIndex i : clean) result_.is_dirty[i] = 1;
+    for (const PrimitiveIndex i : beside_changed) result_.is_dirty[i] = 1;
   }
 
   bool isUnclear(PrimitiveIndex primitive) const { return result_.is_open[primitive] != 0 || isBesideCut(primitive); }
