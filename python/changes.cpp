@@ -89,10 +89,9 @@ void bindValues(py::module_& module) {
       .def_readonly("iri", &ObjectChange::iri, "Its IRI; of a gone object the one that it had.")
       .def_readonly("class_name", &ObjectChange::class_name, "Local name of its class, such as 'Tree'.")
       .def_readonly("derived_from", &ObjectChange::derived_from, "IRIs of the objects before the change.");
-  py::class_<MapChanges>(
-      module, "MapChanges",
-      "What a change did. An object goes on in another one that holds at least half of its measured\n"
-      "points, or the other way round.")
+  py::class_<MapChanges>(module, "MapChanges",
+                         "What a change did. Object B continues object A when they share at least half of the cluxels\n"
+                         "of the smaller one.")
       .def_readonly("scans_added", &MapChanges::scans_added, "Number of scans.")
       .def_readonly("scans_already_there", &MapChanges::scans_already_there, "Number of scans that were passed over.")
       .def_readonly("scans_removed", &MapChanges::scans_removed, "Number of scans.")

@@ -27,6 +27,8 @@ struct CloudPose {
   std::array<double, 16> T_map_sensor{};  ///< as in Cloud: a rigid motion
 };
 
+/// Added: continues no object. Gone: no object continues it. Changed: continues one, with other members or another
+/// class. Split: one of several objects that continue one. Joined: continues several.
 enum class ChangeKind : std::uint8_t { Added, Gone, Changed, Split, Joined };
 
 /// An object that a change added, removed or altered.
@@ -37,8 +39,8 @@ struct ObjectChange {
   std::vector<std::string> derived_from;  ///< IRIs of Changed, Split and Joined before the change
 };
 
-/// What a change did. An object goes on in another one with which it shares at least half of the cluxels of the smaller
-/// of the two, by their seed points or by where they are.
+/// What a change did. Object B continues object A when they share at least half of the cluxels of the smaller one.
+/// Cluxels are matched by seed point, and by position where seed points match no object.
 struct MapChanges {
   std::size_t scans_added = 0, scans_already_there = 0, scans_removed = 0, scans_moved = 0;
   std::size_t tiles_changed = 0;  ///< tiles of 16 m of which something was computed anew and differs

@@ -43,7 +43,7 @@ inline std::string iriOfDerivation(const ContentHash& id) {
 inline std::string iriOfStatement(const ContentHash& id) {
   return mapIri("statement", id.hex());
 }
-/// What goes on under one name while its object gains and loses members.
+/// The identity that stays while its object gains and loses members.
 inline std::string iriOfThing(const ContentHash& id) {
   return mapIri("thing", id.hex());
 }

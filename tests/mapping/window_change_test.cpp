@@ -13,7 +13,7 @@ using testing::ElementsAre;
 
 constexpr double kReach_m = 5;
 
-/// A thing of one cluxel in tile 0, and a wall of one cluxel in tile 1 that goes on in tile 2, outside of the window.
+/// A thing of one cluxel in tile 0, and a wall of one cluxel in tile 1 that continues in tile 2, outside of the window.
 /// The map knew both; since the window cuts the wall, the thing's relations are not those that were stored.
 MapWindow thingBesideACutWall() {
   MapWindow window;

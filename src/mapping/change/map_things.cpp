@@ -23,7 +23,7 @@ struct Heirs {
 };
 
 /// The objects that have the same name before and after, each with its number before. Objects of one map have no common
-/// members, so that such an object has no other predecessor; one that is named by its class goes on whatever it gains.
+/// members, so that such an object has no other predecessor; one that is named by its class always continues.
 /// Objects of several maps may share members: then the list is empty.
 std::map<ContentHash, std::size_t> sameObjects(const std::vector<ObjectMembers>& before,
                                                const std::vector<ObjectMembers>& after, ObjectsOf objects_of) {
@@ -72,12 +72,12 @@ Heirs heirsOf(const std::vector<ObjectMembers>& before, const std::vector<Object
 
 class Naming {
  public:
-  Naming(rdf::WriteTransaction& transaction, std::string time, const GoesOn& goes_on)
+  Naming(rdf::WriteTransaction& transaction, std::string time, const IsInBoth& is_in_both)
       : reader_(static_cast<const rdf::ReadTransaction&>(transaction)),
         stored_(reader_),
         writer_(transaction),
         time_(std::move(time)),
-        goes_on_(goes_on) {}
+        is_in_both_(is_in_both) {}
 
   void run(const std::vector<ObjectMembers>& before, const std::vector<ObjectMembers>& after, ObjectsOf objects_of) {
     const Heirs heirs = heirsOf(before, after, objects_of);
@@ -172,10 +172,10 @@ class Naming {
   /// Whether a thing has an object after the change.
   bool isHeld(const std::string& thing) {
     if (held_.contains(thing)) return true;
-    if (!goes_on_) return false;
+    if (!is_in_both_) return false;
     const std::vector<ContentHash> objects = stored_.objectsOf(thing);
     return std::any_of(objects.begin(), objects.end(),
-                       [&](const ContentHash& object) { return goes_on_(object) && nameOf(object).iri == thing; });
+                       [&](const ContentHash& object) { return is_in_both_(object) && nameOf(object).iri == thing; });
   }
 
   Thing named(const ContentHash& object) {
@@ -211,7 +211,7 @@ class Naming {
   ThingLookup stored_;
   rdf::QuadWriter writer_;
   std::string time_;
-  const GoesOn& goes_on_;
+  const IsInBoth& is_in_both_;
   Things things_;               ///< of the objects that were looked up
   std::set<std::string> held_;  ///< things that an object of the change has after it
   std::set<std::string> ended_;
@@ -220,8 +220,8 @@ class Naming {
 }  // namespace
 
 void writeThings(rdf::WriteTransaction& transaction, const std::string& time, const std::vector<ObjectMembers>& before,
-                 const std::vector<ObjectMembers>& after, ObjectsOf objects_of, const GoesOn& goes_on) {
-  Naming(transaction, time, goes_on).run(before, after, objects_of);
+                 const std::vector<ObjectMembers>& after, ObjectsOf objects_of, const IsInBoth& is_in_both) {
+  Naming(transaction, time, is_in_both).run(before, after, objects_of);
 }
 
 void copyHistory(const rdf::QuadReader& from, rdf::WriteTransaction& into) {

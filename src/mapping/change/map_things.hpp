@@ -19,16 +19,16 @@
 namespace cluxel::mapping {
 
 /// Whether an object that is not listed exists both before and after the change.
-using GoesOn = std::function<bool(const ContentHash& object)>;
+using IsInBoth = std::function<bool(const ContentHash& object)>;
 
 /// Gives each object after a change its thing, and records splits, joins and ends. The part with most shared members
 /// keeps a name (ties: the smallest hash). A join keeps the older name, then the smaller. An object that comes back as
 /// it was gets its former name, if no other has it. A new thing is named by the hash of its first object. `time` is an
-/// xsd:dateTime. Of one map, objects that are the same before and after need not be given when `goes_on` knows them.
+/// xsd:dateTime. Of one map, objects that are the same before and after need not be given when `is_in_both` knows them.
 /// Cost: that of the objects given and of their history.
 void writeThings(rdf::WriteTransaction& transaction, const std::string& time, const std::vector<ObjectMembers>& before,
                  const std::vector<ObjectMembers>& after, ObjectsOf objects_of = ObjectsOf::OneMap,
-                 const GoesOn& goes_on = {});
+                 const IsInBoth& is_in_both = {});
 
 /// Adds the history of another map: its activities, lineage and things.
 void copyHistory(const rdf::QuadReader& from, rdf::WriteTransaction& into);
@@ -37,15 +37,15 @@ struct FormerName {
   ContentHash object;   ///< the present object
   std::string meaning;  ///< "was object/HEX" or "is thing/HEX", for people
 };
-/// What went on in what, read once for many names.
+/// Which things and objects continue which, read once for many names.
 class Lineage {
  public:
   /// `present` are the objects that there are.
   Lineage(const rdf::QuadReader& quads, const std::vector<ContentHash>& present);
 
-  /// The present object that goes on under the name of a thing or of a former object: an IRI, thing/HEX, object/HEX, or
-  /// the first digits of a hash (four or more). Absent when there is none, or several. Cost of an IRI: that of its own
-  /// lineage; of digits: all things.
+  /// The present object of a thing, or the one that continues a former object. `name`: an IRI, thing/HEX, object/HEX,
+  /// or the first digits of a hash (four or more). Absent when there is none, or several. Cost of an IRI: that of its
+  /// own lineage; of digits: all things.
   std::optional<FormerName> find(const std::string& name) const;
 
  private:

@@ -49,7 +49,7 @@ struct DerivedObject {
 
 struct ObjectChanges {
   std::size_t unchanged = 0;
-  std::vector<ContentHash> added, gone;  ///< no object before goes on in it; it goes on in none after
+  std::vector<ContentHash> added, gone;  ///< continues no object before; is continued by none after
   std::vector<DerivedObject> changed;    ///< other members or another class, and one predecessor
   std::vector<DerivedObject> split;      ///< the parts of an object that has become several
   std::vector<DerivedObject> joined;     ///< made of several objects

@@ -52,7 +52,7 @@ class SuccessorSearch {
     }
   }
 
-  /// For objects before that go on in none, and for objects after in which none goes on.
+  /// For objects before that none continues, and for objects after that continue none.
   void addByPlaces() {
     const std::vector<char> has_seeds_of_before = has_predecessor_;
     std::vector<char> is_orphan;

@@ -11,10 +11,11 @@ namespace cluxel::mapping {
 /// Whether the subject is an IRI of an object or a thing, be it known or not.
 bool namesObject(const Term& subject);
 
-/// Replaces quads of graph `operator` whose subject is an object of the map, a thing or a former object that goes on in
-/// one: `object a CLASS` becomes a statement of class, any other property a stated fact. Quads about objects that the
-/// map never had stay as they are. Notes how many there were. Throws Error: InvalidArgument for a property that the map
-/// computes itself, or a malformed statement; NotFound for a class that the ontology does not know.
+/// Replaces quads of graph `operator` whose subject is an object of the map, or a thing or former object that such an
+/// object continues: `object a CLASS` becomes a statement of class, any other property a stated fact. Quads about
+/// objects that the map never had stay as they are. Notes how many there were. Throws Error: InvalidArgument for a
+/// property that the map computes itself, or a malformed statement; NotFound for a class that the ontology does not
+/// know.
 void anchorStatedObjects(rdf::WriteTransaction& transaction, const ParsedInputs& parsed, ProgressSink& sink);
 
 /// What changed since the graph `observed` was written.

@@ -21,7 +21,7 @@ bool hasOtherInference(const rdf::ReadTransaction& transaction, const MapInputs&
 
 }  // namespace
 
-GoesOn keptBy(const rdf::ReadTransaction& transaction, const SemanticUpdate& update) {
+IsInBoth keptBy(const rdf::ReadTransaction& transaction, const SemanticUpdate& update) {
   std::set<ContentHash> listed;
   for (const ObjectMembers& object : update.after) listed.insert(object.id);
   return [&transaction, listed = std::move(listed)](const ContentHash& object) {

@@ -24,7 +24,7 @@ struct SemanticUpdate {
 };
 
 /// For writeThings(): whether an object that the update does not list exists before and after.
-GoesOn keptBy(const rdf::ReadTransaction& transaction, const SemanticUpdate& update);
+IsInBoth keptBy(const rdf::ReadTransaction& transaction, const SemanticUpdate& update);
 
 /// What may have changed since the layers were made.
 enum class ChangedInputs : std::uint8_t {

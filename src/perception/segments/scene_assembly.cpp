@@ -39,10 +39,10 @@ class TileNumbering {
 /// Components joined to primitives.
 struct JoinedComponents {
   std::vector<std::uint32_t> primitive_of;  ///< by component, in the order of first components
-  std::vector<std::uint32_t> cut;           ///< components that go on in a tile that is not held
+  std::vector<std::uint32_t> cut;           ///< components that continue in a tile that is not held
 };
 
-/// `apart`: tiles that are not held; what goes on in those of `elsewhere` is cut.
+/// `apart`: tiles that are not held; what continues in those of `elsewhere` is cut.
 JoinedComponents joinComponents(const TileOutputs& tiles, const TileNumbering& components, const TileSet& apart,
                                 const TileSet& elsewhere) {
   JoinedComponents joined;

@@ -46,7 +46,7 @@ Scene assembleScene(const TileOutputs& tiles, const RelationParams& params, std:
 /// The scene of some of a map's tiles.
 struct SceneWindow {
   Scene scene;
-  std::vector<char> is_cut;  ///< by primitive: it goes on in a tile that is not held
+  std::vector<char> is_cut;  ///< by primitive: it continues in a tile that is not held
 };
 /// The same for some tiles of a map. `elsewhere`: the map's other tiles, as far as they are next to those that are
 /// held; of them only the ground is read. Cut primitives have the ids and attributes of what is held of them. `hidden`:
