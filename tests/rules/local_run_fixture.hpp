@@ -43,7 +43,7 @@ struct Window {
 };
 Window windowOf(const ChangedScene& change, const ReasoningResult& before, double around_m, double reach_m);
 
-/// An object by its content: id, rule and confidence; objects of a whole class by their members.
+/// An object by its content: id, rule and confidence; class-wide objects by their members.
 using KnownObjects = std::set<std::string>;
 KnownObjects objectsIn(const Scene& scene, const ReasoningResult& result, const RuleSet& rules);
 

@@ -10,7 +10,7 @@ namespace cluxel::mapping {
 /// the same result, when all rules have a reach. Memory: decision 0121.
 SemanticUpdate updateAll(const LayerWork& work, const OutputChanges& changes);
 
-/// Whether the rules allow for strips: all have a reach, and only the ground may be an object of a whole class.
+/// Whether the rules allow for strips: all have a reach, and only the ground may be a class-wide object.
 bool canBeInStrips(const LayerWork& work);
 
 /// Other SPARQL rules, or another ontology of the same classes: only what is inferred changes. Absent when something

@@ -9,7 +9,7 @@
 
 namespace cluxel::mapping {
 
-/// Whether the window holds all of an object; false for one of a whole class.
+/// Whether the window holds all of an object; false for a class-wide one.
 bool isInside(const ObjectRecord& record, const MapWindow& window);
 
 /// Whom the cluxels of a window belong to after a change, by number in `objects`.

@@ -14,7 +14,7 @@ namespace cluxel::mapping {
 /// What facts are not copied about, because it is told anew.
 struct NotLent {
   std::set<ContentHash> objects, primitives;
-  std::set<ContentHash> wide;  ///< objects of whole classes: of these only their other primitives are copied
+  std::set<ContentHash> wide;  ///< class-wide objects: of these only their other primitives are copied
 };
 
 /// Copies the facts of a lender, without facts about ways.

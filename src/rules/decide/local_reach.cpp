@@ -130,7 +130,7 @@ class Reaching {
                                                       : reachOf(line.measure);
   }
 
-  /// The object of a whole class must consist of seeds alone, and be the only one of its class.
+  /// A class-wide object must consist of seeds alone, and be the only one of its class.
   void checkWholeClass(const AcceptLeaf& accept) {
     if (!accept.absorb.empty() || accept.splitting) refuse("lets the object of a whole class grow");
     if (accept.parts.size() != 1 || accept.parts.front().first != rule_->seed.name)

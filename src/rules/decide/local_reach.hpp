@@ -20,15 +20,15 @@ struct LocalReach {
 
 /// Members of a step are all primitives that it binds, joins, compares or lets grow. Absent for:
 /// - `ask:`;
-/// - objects of a whole class (`merge_into: class`) that take more than their seeds, split or absorb, or that stand
-///   beside other objects of the class: they would be measured through the whole map;
+/// - class-wide objects (`merge_into: class`) that take more than their seeds, split or absorb, or that stand beside
+///   other objects of the class: they would be measured through the whole map;
 /// - a find or an absorption that is looked up by `vertical_gap` or `axis_distance`, and such measures to labels or
 ///   objects: they have no bound in plan view;
 /// - `merge_into: related` after a test that holds for something far away.
 LocalReach localReach(const RuleSet& rules);
 
-/// How many of the first strata decide about each primitive alone, looking at nothing else, and make the object of a
-/// whole class: what they take is the same in every run over the primitive.
+/// How many of the first strata decide about each primitive alone, looking at nothing else, and make a class-wide
+/// object: what they take is the same in every run over the primitive.
 std::size_t strataOfLoneSeeds(const RuleSet& rules);
 
 /// The strata of a set in their order, divided behind those of lone seeds.

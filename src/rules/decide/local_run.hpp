@@ -49,7 +49,7 @@ inline constexpr std::uint32_t kLastDecidedLayer = 1;
 /// - of primitives in layers up to kLastDecidedLayer the traces, the decisions that have one of them as a seed, and the
 ///   objects that have one of them as a member are those of `result`;
 /// - of all other primitives, and of objects without a member in these layers, they are those of the run before.
-/// An object of a whole class (`merge_into: class`) consists of the members that both runs gave it.
+/// A class-wide object (`merge_into: class`) consists of the members that both runs gave it.
 struct LocalOutcome {
   ReasoningResult result;
   std::vector<std::uint32_t> layer;  ///< by primitive; all kNoLayer when nothing changed

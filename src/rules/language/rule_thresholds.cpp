@@ -184,7 +184,7 @@ class ThresholdNumbering {
     hash_.add(accept.parts.size());
     for (const auto& [name, part_class] : accept.parts) hash_.addText(name).addText(part_class);
     hash_.add(accept.merge_into).add(accept.confidence.ramps.size());
-    // The surest leaf of all tells about the object of a whole class.
+    // The surest leaf of all tells about the class-wide object.
     if (accept.merge_into == MergeInto::Class) hash_.add(accept.confidence.low).add(accept.confidence.high);
     ContentHasher confidence;
     confidence.add(accept.confidence.low).add(accept.confidence.high);

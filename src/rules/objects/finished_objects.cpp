@@ -35,8 +35,8 @@ std::vector<ObjectPart> finishedParts(const ReasoningState& state, const ObjectI
   return parts;
 }
 
-/// An object of a whole class is told by the surest leaf of its class: which candidate came first depends on what lies
-/// far away.
+/// A class-wide object is told by the surest leaf of its class: which candidate came first depends on what lies far
+/// away.
 void tellByText(const RuleSet& rules, SemanticObject& object) {
   double surest = -1;
   for (const Rule& rule : rules.rules) {
