@@ -143,7 +143,7 @@ MapChanges Map::extend(const std::vector<std::filesystem::path>& scans, const Ch
 MapChanges Map::retract(const std::vector<std::string>& clouds, const ChangeOptions& options, ProgressSink& sink) {
   const std::lock_guard lock(impl_->mutex);
   impl_->map.release();
-  const auto ids = mapping::cloudsNamed(impl_->file, clouds, mapping::Retracted::Named);
+  const auto ids = mapping::cloudsNamed(impl_->file, clouds, mapping::IncludeRetracted::Yes);
   return changesOf(mapping::retractScans(impl_->file, ids, changeParams(options), sink));
 }
 

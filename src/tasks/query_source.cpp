@@ -119,7 +119,7 @@ Term termOf(const std::string& text) {
 QuerySource openQuerySource(const fs::path& file) {
   if (!rdf::rdfFormatOf(file)) {
     QuerySource source{rdf::Environment::open(file, rdf::OpenMode::ReadOnly)};
-    mapping::requireSomething(source.environment->read(), file);
+    mapping::refuseUncommittedBuild(source.environment->read(), file);
     return source;
   }
   QuerySource source{rdf::Environment::temporary()};

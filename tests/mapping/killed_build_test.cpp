@@ -86,8 +86,8 @@ TEST_F(EarlyCommitLeft, OfAFirstBuildIsNoMap) {
     buildMap(scansOf(campus->files()), *inputs, map(), {.stage_points = 1}, sink);
   };
   leave([&] { fs::remove(map()); }, build_all);
-  EXPECT_TRUE(isToBuild(map()));
-  EXPECT_THROW(requireSomething(Environment::open(map(), OpenMode::ReadOnly)->read(), map()), Error);
+  EXPECT_TRUE(hasBuildToDo(map()));
+  EXPECT_THROW(refuseUncommittedBuild(Environment::open(map(), OpenMode::ReadOnly)->read(), map()), Error);
   const fs::path statements = folder.path() / "statements.nt";
   writeFile(statements, "<http://a> <http://b> <http://c> .\n");
   EXPECT_THROW(loadRdfFiles(map(), {statements}, {}, silence()), Error);
@@ -213,7 +213,7 @@ TEST_F(KilledBuild, LeavesAFileThatIsNotUpdatedBeforeItsFirstCommit) {
   rdf::Environment::open(map(), rdf::OpenMode::Create);
   writeFile(map().string() + ".build-lock", "");
   EXPECT_THROW(updateMap(map(), "INSERT DATA { <urn:a> <urn:b> 1 }", {}, silence()), Error);
-  EXPECT_TRUE(isToBuild(map()));
+  EXPECT_TRUE(hasBuildToDo(map()));
 }
 
 }  // namespace

@@ -170,7 +170,7 @@ struct MergeCase {
   double max_window_share = 2;  ///< so that small maps are decided around the border, too
   std::size_t statements = 0;   ///< in each map
   std::uint64_t whole_cluxels = UpdateParams{}.whole_cluxels;
-  std::size_t max_seam = MergeParams{}.max_seam;
+  std::size_t max_border_tiles = MergeParams{}.max_border_tiles;
 };
 
 /// Merges maps and compares the result with a build. Returns how many maps were taken over.
@@ -198,7 +198,7 @@ std::size_t mergeAndCompare(const Street& street, const MergeCase& what, std::mt
   params.change.threads = what.threads;
   params.change.max_window_share = what.max_window_share;
   params.change.whole_cluxels = what.whole_cluxels;
-  params.max_seam = what.max_seam;
+  params.max_border_tiles = what.max_border_tiles;
   const ChangeReport report = mergeMaps(maps, street.merged(), params, silence());
   EXPECT_TRUE(canonicalText(street.merged()) == canonicalText(whole));
   EXPECT_TRUE(blocksOf(street.merged()) == blocksOf(whole));
@@ -238,7 +238,7 @@ TEST(MergeOfStreets, AddsAMapWithALongBorderScanByScan) {
   std::set<std::size_t> west, east;
   for (std::size_t scan = 0; scan < street.size(); ++scan) (scan < 6 ? west : east).insert(scan);
   std::mt19937 random(3);
-  const MergeCase merge{.parts = {west, east}, .threads = 2, .statements = 2, .max_seam = 1};
+  const MergeCase merge{.parts = {west, east}, .threads = 2, .statements = 2, .max_border_tiles = 1};
   EXPECT_EQ(mergeAndCompare(street, merge, random), 0U) << "what the other map decided is taken all the same";
 }
 
@@ -264,7 +264,7 @@ TEST(MergeOfStreets, OfAnyPartsIsTheBuildFromAllScans) {
     // Some maps turn out to need too large a window: what was taken is given up again.
     MergeCase merge{parts, 1 + seed % 2, seed % 4 == 0 ? 0.3 + 0.1 * static_cast<double>(below(6)) : 2, below(4)};
     if (seed % 4 == 0) merge.whole_cluxels = 100U << below(12);
-    if (seed % 7 == 3) merge.max_seam = below(4);
+    if (seed % 7 == 3) merge.max_border_tiles = below(4);
     taken += mergeAndCompare(street, merge, random);
   }
   EXPECT_GT(taken, 0U);

@@ -41,7 +41,7 @@ ExitCode retract(const ChangeOptions& options, Session& session) {
   mapping::requireChangeable(options.map, options.change);
   mapping::ChangeParams params = options.change;
   params.threads = session.threadCount();
-  const auto clouds = mapping::cloudsNamed(options.map, options.clouds, mapping::Retracted::Named);
+  const auto clouds = mapping::cloudsNamed(options.map, options.clouds, mapping::IncludeRetracted::Yes);
   printChange(options.map, retractScans(options.map, clouds, params, session.console), params, session);
   return ExitCode::Done;
 }

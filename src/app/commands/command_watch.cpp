@@ -29,7 +29,7 @@ void report(const WatchOptions& options, std::size_t added, std::size_t scans, s
 
 /// A map keeps its model and rules. They may be named again, so that the command that made the map goes on.
 void refuseOtherInputs(const WatchOptions& options, const Session& session) {
-  if ((options.files.model.empty() && options.files.rules.empty()) || mapping::isToBuild(options.map)) return;
+  if ((options.files.model.empty() && options.files.rules.empty()) || mapping::hasBuildToDo(options.map)) return;
   const mapping::MapInputs inputs =
       mapping::requireFinishedInputs(rdf::Environment::open(options.map, rdf::OpenMode::ReadOnly)->read(), options.map);
   if (withNamedFiles(inputs, options.files, session.dataHome()).hash() == inputs.hash()) return;

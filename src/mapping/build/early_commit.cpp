@@ -85,8 +85,8 @@ class OtherOutputs {
   std::vector<Output> outputs_;
 };
 
-/// Another program may write first, as between two commands.
-rdf::WriteTransaction begunSoon(const BeginBatch& begin) {
+/// Another program may be writing: waits up to ten minutes.
+rdf::WriteTransaction beginWhenFree(const BeginBatch& begin) {
   constexpr auto kPatience = std::chrono::minutes(10);
   const auto deadline = std::chrono::steady_clock::now() + kPatience;
   while (true) {
@@ -105,7 +105,7 @@ void commitPoints(std::span<const scan::ScanId> scans, rdf::WriteTransaction& tr
   for (const scan::ScanId& scan : scans) keys.push_back(tables::keyOf(scan));
   moveBlocks(transaction, tables::kScans, tables::kScansToCome, keys);
   transaction.commit();
-  transaction = begunSoon(begin);
+  transaction = beginWhenFree(begin);
   moveBlocks(transaction, tables::kScansToCome, tables::kScans, keys);
 }
 

@@ -45,7 +45,7 @@ std::vector<std::vector<Quad>> togetherIn(const std::vector<Quad>& quads) {
 }
 
 /// Blank nodes that are too much alike for canonical labels keep theirs.
-std::string sayingOf(std::vector<Quad> together) {
+std::string canonicalTextOf(std::vector<Quad> together) {
   const std::map<std::string, std::string> labels = rdf::canonicalLabels(together);
   std::vector<std::string> lines;
   for (Quad& quad : together) {
@@ -61,10 +61,10 @@ std::string sayingOf(std::vector<Quad> together) {
 
 }  // namespace
 
-std::set<std::string> sayingsOf(const std::vector<Quad>& quads) {
-  std::set<std::string> sayings;
-  for (const std::vector<Quad>& together : togetherIn(quads)) sayings.insert(sayingOf(together));
-  return sayings;
+std::set<std::string> canonicalTextsOf(const std::vector<Quad>& quads) {
+  std::set<std::string> texts;
+  for (const std::vector<Quad>& together : togetherIn(quads)) texts.insert(canonicalTextOf(together));
+  return texts;
 }
 
 std::uint64_t copyOperatorStatements(const rdf::QuadReader& from, rdf::WriteTransaction& into,
@@ -74,12 +74,12 @@ std::uint64_t copyOperatorStatements(const rdf::QuadReader& from, rdf::WriteTran
   return quads.size();
 }
 
-void removeRepeatedSayings(rdf::WriteTransaction& transaction) {
+void removeDuplicatesOfBlankNodes(rdf::WriteTransaction& transaction) {
   const rdf::QuadReader reader(static_cast<const rdf::ReadTransaction&>(transaction));
   rdf::QuadWriter writer(transaction);
   std::set<std::string> known;
   for (const std::vector<Quad>& together : togetherIn(operatorStatements(reader))) {
-    if (known.insert(sayingOf(together)).second) continue;
+    if (known.insert(canonicalTextOf(together)).second) continue;
     for (const Quad& quad : together)
       writer.remove(rdf::QuadIds{writer.intern(quad.subject), writer.intern(quad.predicate), writer.intern(quad.object),
                                  writer.intern(quad.graph)});

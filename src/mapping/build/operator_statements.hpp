@@ -20,12 +20,11 @@ std::uint64_t copyOperatorStatements(const rdf::QuadReader& from, rdf::WriteTran
 void addOperatorStatements(rdf::WriteTransaction& transaction, const std::vector<Quad>& quads);
 /// The quads of graph `operator`; labels of blank nodes get `blank_suffix`.
 std::vector<Quad> operatorStatements(const rdf::QuadReader& reader, const std::string& blank_suffix = {});
-/// What quads say, whatever the labels of blank nodes: a line for each quad without, and a text for all that is said of
-/// blank nodes that belong together.
-std::set<std::string> sayingsOf(const std::vector<Quad>& quads);
-/// Leaves what is said of blank nodes once, if it is said several times: else a merge that is repeated would say it
-/// again.
-void removeRepeatedSayings(rdf::WriteTransaction& transaction);
+/// Texts that do not depend on labels of blank nodes: one line per quad without blank nodes, one text per group of
+/// quads that share blank nodes.
+std::set<std::string> canonicalTextsOf(const std::vector<Quad>& quads);
+/// Removes quads about blank nodes that repeat other such quads. Otherwise each repeated merge would add a copy.
+void removeDuplicatesOfBlankNodes(rdf::WriteTransaction& transaction);
 /// Leaves graph `operator` empty.
 void clearOperatorStatements(rdf::WriteTransaction& transaction);
 

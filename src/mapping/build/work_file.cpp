@@ -68,7 +68,7 @@ void removeMap(const fs::path& file) {
 
 }  // namespace
 
-void requireSomething(const rdf::ReadTransaction& transaction, const fs::path& file) {
+void refuseUncommittedBuild(const rdf::ReadTransaction& transaction, const fs::path& file) {
   if (!holdsNothing(transaction)) return;
   if (!hasBuildLock(withoutLinks(file)) && !hasEarlyCommit(transaction)) return;
   throw Error(ErrorKind::StoreUnavailable,
@@ -77,7 +77,7 @@ void requireSomething(const rdf::ReadTransaction& transaction, const fs::path& f
                   "commit; wait for it, or repeat the command");
 }
 
-bool isToBuild(const fs::path& map) {
+bool hasBuildToDo(const fs::path& map) {
   const Found found = lookAt(withoutLinks(map));
   return found.isNothing() || (found.state && !found.isFinished());
 }

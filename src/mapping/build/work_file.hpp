@@ -14,13 +14,13 @@
 
 namespace cluxel::mapping {
 
-/// Whether a build begins or goes on at this name: there is no map, or one whose build was interrupted. Throws Error
-/// (StoreUnavailable) for what is no map.
-bool isToBuild(const std::filesystem::path& map);
+/// Whether there is no map of this name, or one whose build was interrupted. Throws Error (StoreUnavailable) for what
+/// is no map.
+bool hasBuildToDo(const std::filesystem::path& map);
 
-/// Throws Error (StoreUnavailable) for a file in which a first build has begun and committed nothing: it answers
-/// nothing. An empty store that was loaded is none.
-void requireSomething(const rdf::ReadTransaction& transaction, const std::filesystem::path& file);
+/// Throws Error (StoreUnavailable) for a file of a first build without a commit. A store that was loaded from an empty
+/// RDF file is accepted.
+void refuseUncommittedBuild(const rdf::ReadTransaction& transaction, const std::filesystem::path& file);
 
 class WorkFile {
  public:

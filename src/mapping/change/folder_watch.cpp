@@ -238,7 +238,7 @@ class Watch {
   }
 
   void commit(const scan::ScanSet& scans) {
-    if (!is_built_ && isToBuild(map_)) {  // perhaps an earlier watch was killed in its first build
+    if (!is_built_ && hasBuildToDo(map_)) {  // perhaps an earlier watch was killed in its first build
       extension_.close();
       const BuildReport report = buildMap(scans, callbacks_.inputs(), map_, {.threads = params_.threads}, sink_);
       is_built_ = true;

@@ -249,7 +249,7 @@ ChangeReport MapExtension::add(const scan::ScanSet& scans) {
     if (editor_ && !editor_->resume()) editor_.reset();
     if (!editor_) editor_.emplace(file_, params_, sink_);
     ChangeReport report = addBy(*editor_, scans);
-    editor_->rest();
+    editor_->pause();
     return report;
   } catch (...) {
     editor_.reset();  // it may hold what was not committed
@@ -272,7 +272,8 @@ ChangeReport applyInputs(const fs::path& file, const std::function<MapInputs(Map
   return compacted(appliedTo(file, change, params, sink), file, params, sink);
 }
 
-std::vector<scan::ScanId> cloudsNamed(const fs::path& file, std::span<const std::string> names, Retracted retracted) {
+std::vector<scan::ScanId> cloudsNamed(const fs::path& file, std::span<const std::string> names,
+                                      IncludeRetracted include) {
   const auto environment = rdf::Environment::open(file, rdf::OpenMode::ReadOnly);
   const rdf::ReadTransaction transaction = environment->read();
   const std::vector<Cloud> clouds = storedClouds(transaction);
@@ -285,7 +286,7 @@ std::vector<scan::ScanId> cloudsNamed(const fs::path& file, std::span<const std:
     if (fitting.size() > 1)
       throw Error(ErrorKind::InvalidArgument, file.string() + ": '" + name + "' names " +
                                                   std::to_string(fitting.size()) + " clouds; name each by its id");
-    if (fitting.empty() && retracted == Retracted::Named) {
+    if (fitting.empty() && include == IncludeRetracted::Yes) {
       if (!former) former = retractedScans(transaction);
       for (const RetractedScan& scan : *former)  // nothing is to be done for any of them
         if (std::any_of(scan.sources.begin(), scan.sources.end(),

@@ -67,7 +67,7 @@ void compactMap(const fs::path& map, rdf::CopiedPages pages) {
   const BuildLock no_build(file);
   const auto environment = rdf::Environment::open(file, rdf::OpenMode::ReadWrite);
   if (hasEarlyCommit(environment->read())) {  // of a killed command
-    requireSomething(environment->read(), map);
+    refuseUncommittedBuild(environment->read(), map);
     rdf::WriteTransaction transaction = environment->write();
     eraseEarlyCommit(transaction);
     transaction.commit();
@@ -86,7 +86,7 @@ void compactMap(const fs::path& map, rdf::CopiedPages pages) {
 
 void copyCompacted(const fs::path& map, const fs::path& copy) {
   const auto environment = rdf::Environment::open(map, rdf::OpenMode::ReadOnly);
-  requireSomething(environment->read(), map);
+  refuseUncommittedBuild(environment->read(), map);
   environment->compactTo(copy);
   const bool has_rest = hasEarlyCommit(rdf::Environment::open(copy, rdf::OpenMode::ReadOnly)->read());
   if (has_rest) compactMap(copy);

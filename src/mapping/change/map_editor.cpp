@@ -43,7 +43,7 @@ ino_t inodeOf(const fs::path& file) {
 constexpr std::size_t kLargeCommit = 200;
 
 /// A token in the cache of a commit tells whether the commit is still the newest.
-constexpr const char* kRestToken = "rest of a map editor";
+constexpr const char* kPauseToken = "pause of a map editor";
 
 std::shared_ptr<rdf::Environment> openAs(const fs::path& file, rdf::OpenMode mode) {
   if (!mayBeThere(file))
@@ -149,7 +149,7 @@ rdf::WriteTransaction MapEditor::begin() {
   rdf::WriteTransaction transaction = beginAgain();
   eraseEarlyCommit(transaction);
   if (!std::exchange(has_begun_, true)) readBefore(transaction);  // an update may have come in between
-  if (names_at_end_ && !std::exchange(has_own_before_, true)) {
+  if (defers_things_ && !std::exchange(has_own_before_, true)) {
     const std::vector<ObjectMembers> own = storedMembers(transaction);
     report_.before.insert(report_.before.begin(), own.begin(), own.end());
   }
@@ -248,7 +248,7 @@ void MapEditor::commit(rdf::WriteTransaction& transaction, const std::string& op
   storeState(transaction, MapState{true, inputs_hash_});
   const Activity activity{operation, started_s, secondsNow(), clock.seconds()};
   last_activity_ = addActivity(transaction, activity, scans, parsed_.inputs);
-  if (!names_at_end_) {
+  if (!defers_things_) {
     addLineage(transaction, last_activity_, compareStates(layers.before, layers.after));
     writeThings(transaction, dateTimeText(activity.ended_s), layers.before, layers.after, ObjectsOf::OneMap,
                 keptBy(transaction, layers));
@@ -267,18 +267,18 @@ void MapEditor::commit(rdf::WriteTransaction& transaction, const std::string& op
 }
 
 void MapEditor::note(SemanticUpdate update) {
-  if (!names_at_end_) difference_.add(std::move(update.before), std::move(update.after));
+  if (!defers_things_) difference_.add(std::move(update.before), std::move(update.after));
 }
 
 ChangeReport MapEditor::takeReport() {
-  if (!names_at_end_ && report_.has_changes) {
+  if (!defers_things_ && report_.has_changes) {
     std::tie(report_.before, report_.after) = std::exchange(difference_, {}).take();
     report_.objects = compareStates(report_.before, report_.after, report_.object_count - report_.after.size());
   }
   return std::move(report_);
 }
 
-void MapEditor::handOnNames() {
+void MapEditor::writeDeferredThings() {
   rdf::WriteTransaction transaction = begin();
   report_.after = storedMembers(transaction);
   // Several maps may have the same object.
@@ -299,15 +299,15 @@ rdf::QuadReader MapEditor::newest() const {
   return rdf::QuadReader(openForChange(file_)->read());
 }
 
-void MapEditor::rest() {
-  rested_at_ = std::make_shared<int>();
-  newest().keep(kRestToken, rested_at_);
+void MapEditor::pause() {
+  paused_at_ = std::make_shared<int>();
+  newest().keep(kPauseToken, paused_at_);
   lock_.reset();
 }
 
 bool MapEditor::resume() {
   if (!lock_) lock_.emplace(file_);
-  if (!rested_at_ || newest().kept(kRestToken) != rested_at_) return false;
+  if (!paused_at_ || newest().kept(kPauseToken) != paused_at_) return false;
   report_ = {};
   has_begun_ = false;
   readBefore(environment_->read());
@@ -329,7 +329,7 @@ void MapEditor::report(const rdf::ReadTransaction& transaction, const SemanticUp
   report_.local_commits += update.is_local ? 1 : 0;
   report_.maps_taken_over += update.took_decisions ? 1 : 0;
   report_.tiles_decided += update.tiles_decided;
-  if (!names_at_end_) noteStatements();
+  if (!defers_things_) noteStatements();
 }
 
 }  // namespace cluxel::mapping

@@ -70,7 +70,7 @@ class MapEditor {
   /// commit as other inputs are set.
   void setInputs(ParsedInputs inputs);
 
-  /// What a killed command has committed early is gone in the transaction.
+  /// Begins a write transaction, and erases in it what early commits of a killed command left.
   rdf::WriteTransaction begin();
   /// Begins anew after an early commit.
   rdf::WriteTransaction beginAgain();
@@ -81,15 +81,15 @@ class MapEditor {
   void commit(rdf::WriteTransaction& transaction, const std::string& operation, PointChanges changes,
               const std::vector<Cloud>& scans);
 
-  /// Commits leave the names of things to handOnNames(), which takes them from all of result().before: those of several
-  /// maps may be there.
-  void nameAtEnd() { names_at_end_ = true; }
-  void handOnNames();
+  /// For merges: commits write no things. writeDeferredThings() does it once, from the objects of all maps in
+  /// result().before.
+  void deferThings() { defers_things_ = true; }
+  void writeDeferredThings();
 
   /// Ends a change and gives up the build lock; what was read and computed stays in memory for the next change.
-  void rest();
-  /// Begins another change, with a report of its own. False when the map is not in the state of rest() any more: then
-  /// this editor is of no use. Throws as the constructor when another program is changing the map.
+  void pause();
+  /// Begins another change, with a report of its own. False when the map has changed since pause(): then this editor is
+  /// of no use. Throws as the constructor when another program is changing the map.
   bool resume();
 
   /// The report so far, without what became of the objects.
@@ -123,13 +123,13 @@ class MapEditor {
   std::filesystem::path file_;
   std::optional<BuildLock> lock_;
   std::shared_ptr<rdf::Environment> environment_;
-  std::shared_ptr<const void> rested_at_;  ///< names the commit that was the newest then
+  std::shared_ptr<const void> paused_at_;  ///< names the commit that was the newest then
   const ChangeParams& params_;
   ProgressSink& sink_;
   ParsedInputs parsed_;
   std::string inputs_hash_;    ///< as stored in the file
   std::string last_activity_;  ///< IRI of the run that the last commit was
-  bool names_at_end_ = false;
+  bool defers_things_ = false;
   bool has_own_before_ = false;  ///< of a merge: report_.before holds the objects of this map
   bool all_tiles_ = false;       ///< the next commit computes every tile
   bool ends_in_tiles_ = false;   ///< and decides what follows from their outputs, as after other scans

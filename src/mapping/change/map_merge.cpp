@@ -158,7 +158,7 @@ class Merge {
       }
       std::map<scan::ScanId, ScanInputs> merged;
       addScansOf(target, Eigen::Isometry3d::Identity(), merged);
-      return merged == scans && sayingsOf(operatorStatements(target.quads())) == sayingsOfResult();
+      return merged == scans && canonicalTextsOf(operatorStatements(target.quads())) == textsOfResult();
     } catch (const Error&) {
       return false;  // no map, or one of another version
     }
@@ -185,16 +185,16 @@ class Merge {
     return true;
   }
 
-  /// What graph `operator` of the result says.
-  std::set<std::string> sayingsOfResult() const {
-    std::set<std::string> withdrawn, sayings;
+  /// The canonical texts of graph `operator` of the result.
+  std::set<std::string> textsOfResult() const {
+    std::set<std::string> withdrawn, texts;
     for (const ContentHash& id : withdrawnAmong(quadsOfMaps())) withdrawn.insert(rdf::iriOfStatement(id));
     for (const MapReader& reader : readers_) {
       std::vector<Quad> quads = operatorStatements(reader.quads());
       std::erase_if(quads, [&](const Quad& quad) { return withdrawn.contains(quad.subject.text); });
-      sayings.merge(sayingsOf(quads));
+      texts.merge(canonicalTextsOf(quads));
     }
-    return sayings;
+    return texts;
   }
 
   /// Of the maps in the frame of the result, the one with most points: its scans need no new stages.
@@ -215,14 +215,14 @@ class Merge {
                   maps_[base_].file.string() + ": another program has changed it meanwhile; run the command again");
     editor.setInputs(parseInputs(inputsOfResult()));
     ScanAdditions additions(editor, "merge", kStagePoints);
-    editor.nameAtEnd();
+    editor.deferThings();
     for (std::size_t i = 0; i < maps_.size(); ++i) {
       if (i == base_) continue;
       copyOperatorStatements(readers_[i].quads(), additions.transaction(), blankSuffixOf(i));
       copyHistory(readers_[i].quads(), additions.transaction());
     }
     leaveOutWithdrawn(additions);
-    removeRepeatedSayings(additions.transaction());
+    removeDuplicatesOfBlankNodes(additions.transaction());
     std::vector<std::size_t> others;
     for (std::size_t i = 0; i < maps_.size(); ++i) {
       if (i == base_) continue;
@@ -236,7 +236,7 @@ class Merge {
     }
     for (const std::size_t i : others) addMap(i, additions);
     additions.finish();
-    editor.handOnNames();
+    editor.writeDeferredThings();
     return editor.takeReport();
   }
 
@@ -289,7 +289,7 @@ class Merge {
     return is_large && isAlike(number) && own.map_origin == inputs.map_origin && own.crs == inputs.crs &&
            differencesOf(own, inputs).empty() &&
            canLendDecisions(additions.transaction(), readers_[number].transaction(), params_.change.max_window_share,
-                            params_.max_seam);
+                            params_.max_border_tiles);
   }
 
   /// Copies the scans and tiles of a map that fits into one batch. Of others the scans are added one by one.

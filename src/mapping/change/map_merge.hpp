@@ -25,7 +25,7 @@ struct MergeParams {
   bool force = false;              ///< replace a file that is there
   /// A map that meets the others in more tiles does not lend what it decided: what lies along a border is decided at
   /// once.
-  std::size_t max_seam = 100;
+  std::size_t max_border_tiles = 100;
 };
 
 /// Merges `maps` (at least two) into `target`. Scans that several maps hold with the same pose count once. Operator

@@ -81,7 +81,7 @@ sparql::UpdateReport updateMap(const std::filesystem::path& file, const std::str
   const rdf::InferenceCheck check = checkOf(options.query.budget, Clock::now());
   rdf::WriteTransaction transaction = rdf::writeMap(file);
   const bool is_map = requireFinished(file, transaction);
-  requireSomething(transaction, file);
+  refuseUncommittedBuild(transaction, file);
   if (is_map && options.any_graph_writable)
     throw Error(ErrorKind::InvalidArgument, file.string() +
                                                 ": is a map, of which only the operator's statements may be written; "

@@ -79,7 +79,7 @@ RdfLoadReport loadRdfFiles(const fs::path& store, const std::vector<fs::path>& f
                            ProgressSink& sink) {
   NewStore made(store);
   rdf::WriteTransaction transaction = rdf::writeMap(store);
-  requireSomething(transaction, store);
+  refuseUncommittedBuild(transaction, store);
   const bool is_map = requireFinished(store, transaction);
   RdfLoadParams own = params;
   if (is_map && own.graph.empty()) own.graph = rdf::vocabulary::kGraphOperator;

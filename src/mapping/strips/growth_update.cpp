@@ -39,7 +39,7 @@ class GrowthUpdate {
         changes_(changes),
         former_(former),
         all_(storedTiles(work.transaction)) {
-    params_.max_window_share = 2;  // a window never gives way to the whole map
+    params_.max_window_share = kNoWindowLimit;
     for (const auto& [tile, summary] : changes.former_summaries)
       if (!summary && all_.contains(tile)) new_.insert(tile);
     other_ = without(TileSet(changes.tiles), new_);
@@ -63,7 +63,7 @@ class GrowthUpdate {
       if (work_.check) work_.check(0);
       auto decided = decide(tiles);
       if (!decided && is_first) return std::nullopt;
-      if (!decided) return decideRest();
+      if (!decided) return decideWholeMap();
       is_first = false;
       update.tiles_decided += decided->tiles_decided;
       update.objects = decided->objects, update.cluxels = decided->cluxels, update.primitives = decided->primitives;
@@ -71,7 +71,8 @@ class GrowthUpdate {
       strip_.told_clouds = seenClouds(storedClouds(transaction_));
       returnFreeMemory();
     }
-    if (!std::all_of(wide.begin(), wide.end(), [&](const ContentHash& id) { return isThere(id); })) return decideRest();
+    if (!std::all_of(wide.begin(), wide.end(), [&](const ContentHash& id) { return isThere(id); }))
+      return decideWholeMap();
     tellRays();
     inferFacts(transaction_, work_.parsed.inputs, work_.sink, work_.check);
     const rdf::ReadTransaction& reading = transaction_;
@@ -134,8 +135,8 @@ class GrowthUpdate {
     tellPresence(transaction_, made_.take(), clouds, made_.removed(), params_.threads);
   }
 
-  /// A strip cannot be decided alone: the whole map is.
-  SemanticUpdate decideRest() {
+  /// Decides the whole map, when a strip cannot be decided alone.
+  SemanticUpdate decideWholeMap() {
     work_.stages.readAsBefore(nullptr, {});
     OutputChanges rest;
     for (const TileKey& tile : new_) noteChange(tile, true, rest);

@@ -55,7 +55,7 @@ class StripUpdate {
         former_(std::move(former)),
         cluxels_(cluxels),
         all_(storedTiles(work.transaction)) {
-    params_.max_window_share = 2;  // a window never gives way to the whole map
+    params_.max_window_share = kNoWindowLimit;
   }
 
   /// Absent when a strip cannot be decided alone. Then former and new layers are mixed; a run over the whole map

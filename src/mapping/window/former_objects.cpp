@@ -66,7 +66,7 @@ std::vector<ObjectMembers> storedMembers(const rdf::ReadTransaction& transaction
 }
 
 const perception::SummaryTile* FormerObjects::summaryOf(const perception::TileKey& tile) const {
-  if (former_.isOther(tile)) return former_.of(tile);
+  if (former_.hasChanged(tile)) return former_.of(tile);
   const auto same = stages_.summaries().find(tile);
   if (same == stages_.summaries().end()) refuseIncompleteTile();
   return &same->second;
@@ -74,7 +74,7 @@ const perception::SummaryTile* FormerObjects::summaryOf(const perception::TileKe
 
 void FormerObjects::add(const TileLayer& layer, const std::function<bool(const ContentHash&)>& is_wanted) {
   if (const perception::SummaryTile* summary = summaryOf(layer.key))
-    members_.add(layer, *summary, former_.isOther(layer.key) || will_change_(layer.key), is_wanted);
+    members_.add(layer, *summary, former_.hasChanged(layer.key) || will_change_(layer.key), is_wanted);
 }
 
 std::vector<ObjectMembers> formerObjects(const rdf::ReadTransaction& transaction, const OutputChanges& changes,

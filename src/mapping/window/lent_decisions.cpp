@@ -55,7 +55,7 @@ std::vector<Eigen::AlignedBox3d> raysOfOthers(const std::vector<SeenCloud>& a, c
 }
 
 /// The tiles of both maps, and those of the lender beside tiles of the map.
-TileSet seamOf(const TileSet& own, const TileSet& of_lender) {
+TileSet borderOf(const TileSet& own, const TileSet& of_lender) {
   return perception::withRing(own, of_lender);
 }
 
@@ -86,10 +86,11 @@ void copyBlock(rdf::WriteTransaction& into, const rdf::ReadTransaction& from, st
 }  // namespace
 
 bool canLendDecisions(const rdf::ReadTransaction& map, const rdf::ReadTransaction& lender, double max_share,
-                      std::size_t max_seam) {
+                      std::size_t max_border_tiles) {
   const std::optional<SemanticState> own = storedSemanticState(map), other = storedSemanticState(lender);
   const TileSet tiles = storedTiles(map), of_lender = storedTiles(lender);
-  if (!own || !other || seamOf(tiles, of_lender).size() > max_seam || likelyShareDecided(tiles, of_lender) > max_share)
+  if (!own || !other || borderOf(tiles, of_lender).size() > max_border_tiles ||
+      likelyShareDecided(tiles, of_lender) > max_share)
     return false;
   const auto clouds = unionOfClouds(own->clouds, other->clouds);
   if (!clouds || tellsPresence(own->clouds) != tellsPresence(*clouds) ||
@@ -104,7 +105,7 @@ LentDecisions::LentDecisions(rdf::WriteTransaction& transaction, const rdf::Read
     if (transaction.block(tables::kTileLayers, tables::keyOf(tile))) own_.insert(tile);
   const TileSet of_lender = storedTiles(lender);
   for (const TileKey& tile : of_lender) (own_.contains(tile) ? common_ : lent_).insert(tile);
-  seam_ = seamOf(own_, of_lender);
+  border_ = borderOf(own_, of_lender);
   own_state_ = storedSemanticState(transaction).value();
   state_of_lender_ = storedSemanticState(lender).value();
   const std::vector<SeenCloud>&of_own = own_state_.clouds, &of_other = state_of_lender_.clouds;
@@ -201,8 +202,8 @@ void LentDecisions::noteChanges(OutputChanges& changes, TileStages& stages) cons
       changes.former_summaries.insert_or_assign(tile, std::string(former));
     if (haveSameOutputs(transaction_, lender_, tile)) changes.tiles.erase(tile);
   }
-  changes.tiles.insert(seam_.begin(), seam_.end());
-  stages.noteEven(same_even, seam_);
+  changes.tiles.insert(border_.begin(), border_.end());
+  stages.noteEven(same_even, border_);
 }
 
 void LentDecisions::takeBack() {

@@ -16,12 +16,12 @@
 
 namespace cluxel::mapping {
 
-/// Whether a map may take over what `lender`, a map of the same inputs and frame, decided: objects of a whole class are
+/// Whether a map may take over what `lender`, a map of the same inputs and frame, decided: class-wide objects are
 /// ground only, scans of both have the same pose and time, and facts about presence are told in both or in none. False
-/// also where more than `max_share` of all tiles are likely to be decided anew, and where the maps meet in more than
-/// `max_seam` tiles: a seam goes through the stages and is decided at once.
+/// also where more than `max_share` of all tiles are likely to be decided anew, and where the border has more than
+/// `max_border_tiles` tiles: it goes through the stages and is decided at once.
 bool canLendDecisions(const rdf::ReadTransaction& map, const rdf::ReadTransaction& lender, double max_share,
-                      std::size_t max_seam);
+                      std::size_t max_border_tiles);
 
 /// Lends layers, records, margins, ways and facts of the tiles that only the lender had. With them the map is what two
 /// maps side by side are: what lies within reach of both is to be decided anew.
@@ -44,9 +44,10 @@ class LentDecisions {
   const SemanticState& state() const { return state_; }
   /// Of each map.
   std::vector<SemanticState> statesOfMaps() const { return {own_state_, state_of_lender_}; }
-  /// Tiles of both maps, and those of the lender beside tiles of the map: everything in them counts as new.
-  const TileSet& seam() const { return seam_; }
-  /// A lent tile of each object of a whole class, which is told anew.
+  /// Where the maps meet: tiles of both, and those of the lender beside tiles of the map. Everything in them counts as
+  /// new.
+  const TileSet& border() const { return border_; }
+  /// A lent tile of each class-wide object, which is told anew.
   const TileSet& tilesOfWide() const { return tiles_of_wide_; }
   /// Objects of each map that rays of the other's clouds may pass.
   const std::set<ContentHash>& passed() const { return passed_; }
@@ -63,13 +64,13 @@ class LentDecisions {
 
   rdf::WriteTransaction& transaction_;
   const rdf::ReadTransaction& lender_;
-  TileSet own_, lent_, common_, seam_, tiles_of_wide_;
+  TileSet own_, lent_, common_, border_, tiles_of_wide_;
   std::set<ContentHash> passed_;
   SemanticState own_state_, state_of_lender_, state_;
   NotLent not_lent_;
   std::set<ContentHash> reaching_;              ///< objects of the lender in lent and common tiles
   std::set<ContentHash> added_;                 ///< records
-  std::map<ContentHash, std::string> widened_;  ///< records that the map had of objects of whole classes
+  std::map<ContentHash, std::string> widened_;  ///< records that the map had of class-wide objects
   std::optional<LentFacts> facts_;
 };
 

@@ -45,10 +45,10 @@ std::vector<Part> partsIn(const TileLayer& layer, const std::set<ContentHash>& b
 }
 
 /// Layers (rules::layersAround()), as far as the stored layers of tiles tell them.
-class LayerSearch {
+class StoredLayerSearch {
  public:
-  LayerSearch(const rdf::ReadTransaction& transaction, TileSet map, const std::set<ContentHash>& lone_objects,
-              double reach_m)
+  StoredLayerSearch(const rdf::ReadTransaction& transaction, TileSet map, const std::set<ContentHash>& lone_objects,
+                    double reach_m)
       : transaction_(transaction), lone_objects_(lone_objects), reach_m_(reach_m + kSlack_m), map_(std::move(map)) {}
 
   /// Everything in some tiles is layer 0.
@@ -141,7 +141,7 @@ std::set<ContentHash> objectsOfLoneSeeds(const rules::RuleSet& rules) {
 
 TileSet likelyTiles(const rdf::ReadTransaction& transaction, const TileSet& map, const TileSet& changed,
                     const std::set<ContentHash>& lone_objects, double reach_m, std::uint32_t layers) {
-  LayerSearch search(transaction, map, lone_objects, reach_m);
+  StoredLayerSearch search(transaction, map, lone_objects, reach_m);
   search.beginWith(changed);
   return search.tilesOfFirst(layers);
 }
@@ -149,7 +149,7 @@ TileSet likelyTiles(const rdf::ReadTransaction& transaction, const TileSet& map,
 TileSet tilesAround(const rdf::ReadTransaction& transaction, const std::set<ContentHash>& primitives,
                     const TileSet& tiles, const std::set<ContentHash>& lone_objects, double reach_m,
                     std::uint32_t layers) {
-  LayerSearch search(transaction, storedTiles(transaction), lone_objects, reach_m);
+  StoredLayerSearch search(transaction, storedTiles(transaction), lone_objects, reach_m);
   search.beginWith(primitives, tiles);
   return perception::unionOf(search.tilesOfFirst(layers), tiles);
 }

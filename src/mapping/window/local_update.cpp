@@ -121,11 +121,11 @@ class LocalUpdate {
       return known->second;
     };
     TileSet anew = perception::unionOf(statements.tiles(), decided_otherwise_);
-    if (lent_ != nullptr) anew.insert(lent_->seam().begin(), lent_->seam().end());
+    if (lent_ != nullptr) anew.insert(lent_->border().begin(), lent_->border().end());
     if (strip_ != nullptr) anew.insert(strip_->anew.begin(), strip_->anew.end());
     const WindowChange change = changeIn(window, changes_, anew, reach_m_, input_of);
     const rules::LocalInput input = localInputOf(window, change, lone_objects_, reach_m_);
-    if (isTooSmall(tilesBeyond(window, change, changes_, transaction_, input.likely.layers), window))
+    if (growOrGiveUp(tilesBeyond(window, change, changes_, transaction_, input.likely.layers), window))
       return std::nullopt;
     rules::ThresholdMargins margins(window.scene, parsed_.rules);
     rules::ReasoningContext context;
@@ -135,7 +135,7 @@ class LocalUpdate {
     if (strip_ != nullptr) context.splits = strip_->splits;
     rules::LocalRun rules_run(input, parsed_.rules, context, reach_m_);
     if (rules_run.layers() != input.likely.layers &&
-        isTooSmall(tilesBeyond(window, change, changes_, transaction_, rules_run.layers()), window))
+        growOrGiveUp(tilesBeyond(window, change, changes_, transaction_, rules_run.layers()), window))
       return std::nullopt;
     sink_.progress("scene", window.scene.primitives.size(), window.scene.primitives.size());
     TileSet lacking;
@@ -143,7 +143,7 @@ class LocalUpdate {
     if (!decision) {
       lacking.merge(tilesBeyond(window, change, changes_, transaction_, rules_run.layers()));
       std::erase_if(lacking, [&](const TileKey& tile) { return !map_.contains(tile) || window.tiles.contains(tile); });
-      if (!isTooSmall(lacking, window)) needs_whole_map_ = true;
+      if (!growOrGiveUp(lacking, window)) needs_whole_map_ = true;
       return std::nullopt;
     }
     if (strip_ != nullptr) addWideRecords(*decision);
@@ -171,8 +171,8 @@ class LocalUpdate {
     more_ = isTooLarge(wide.size()) ? likely(kLayersOfSeam) : std::move(wide);
   }
 
-  /// Whether the window lacks tiles. The next one has them.
-  bool isTooSmall(const TileSet& beyond, const MapWindow& window) {
+  /// Adds `beyond` to the next window. True when this window cannot be used, or the whole map has to be computed.
+  bool growOrGiveUp(const TileSet& beyond, const MapWindow& window) {
     more_ = perception::unionOf(std::move(more_), attempt_ < kNarrowAttempts ? beyond : perception::grown(beyond));
     needs_whole_map_ = attempt_ == 0 && willBeTooLarge(window.tiles, beyond);
     return needs_whole_map_ || !beyond.empty();
@@ -184,7 +184,7 @@ class LocalUpdate {
                           std::inserter(changes_.tiles, changes_.tiles.end()));
   }
 
-  /// Gives objects of whole classes a record as soon as a strip has some of them.
+  /// Gives class-wide objects a record as soon as a strip has some of them.
   void addWideRecords(const WindowDecision& decision) {
     for (const rules::SemanticObject& object : decision.objects) {
       if (!object.is_class_wide || storedRecord(transaction_, object.id)) continue;
@@ -194,8 +194,8 @@ class LocalUpdate {
     }
   }
 
-  /// Objects of whole classes of which the strip has nothing are told again, too: what tiles that were not shown added
-  /// to them is gone.
+  /// Class-wide objects of which the strip has nothing are told again, too: what tiles that were not shown added to
+  /// them is gone.
   void addOtherWideObjects(std::vector<rules::SemanticObject>& wide) const {
     for (const ContentHash& id : strip_->wide) {
       const auto record = storedRecord(transaction_, id);
@@ -228,8 +228,8 @@ class LocalUpdate {
     return static_cast<double>(tiles) > params_.max_window_share * static_cast<double>(map_.size());
   }
 
-  /// Whether an object of a whole class comes or goes, or is not the ground, which alone has neither neighbours nor
-  /// facts from rays: such a change is told by the whole map.
+  /// Whether a class-wide object comes or goes, or is not the ground, which alone has neither neighbours nor facts from
+  /// rays: such a change is told by the whole map.
   bool changesWideObjects(const MapWindow& window, const WindowDecision& decision,
                           const std::vector<rules::SemanticObject>& there) const {
     for (const rules::SemanticObject& object : decision.objects)

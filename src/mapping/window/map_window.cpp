@@ -60,7 +60,7 @@ void requireFit(const TileSet& held, const TileStages& stages, const OutputChang
                 const std::map<TileKey, TileLayer>& layers) {
   for (const TileKey& tile : held) requireFit(stages.summaries().contains(tile) && stages.components().contains(tile));
   for (const auto& [tile, layer] : layers) {
-    if (former.isOther(tile))
+    if (former.hasChanged(tile))
       requireFit(former.of(tile) != nullptr && former.of(tile)->size() == layer.size());
     else
       requireFit(held.contains(tile) && stages.summaries().at(tile).size() == layer.size());
@@ -139,7 +139,7 @@ std::vector<std::uint32_t> formerNumbers(const MapWindow& window, const TileStag
   std::vector<std::uint32_t> numbers;
   numbers.reserve(window.scene.cluxels.size());
   for (const auto& [tile, summary] : stages.summaries()) {
-    if (!former.isOther(tile)) {
+    if (!former.hasChanged(tile)) {
       for (std::uint32_t c = 0; c < summary.size(); ++c) numbers.push_back(c);
       continue;
     }

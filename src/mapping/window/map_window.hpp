@@ -50,8 +50,8 @@ class FormerSummaries {
  public:
   explicit FormerSummaries(const OutputChanges& changes) : changes_(changes) {}
 
-  /// Whether the tile had another summary before, or none.
-  bool isOther(const perception::TileKey& tile) const { return changes_.former_summaries.contains(tile); }
+  /// Whether the summary of the tile changed; also when there was none before.
+  bool hasChanged(const perception::TileKey& tile) const { return changes_.former_summaries.contains(tile); }
   /// Null where there was none.
   const perception::SummaryTile* of(const perception::TileKey& tile);
   /// Gives their memory back; they are read again when they are needed.

@@ -34,9 +34,11 @@ enum class ChangedInputs : std::uint8_t {
   Any,        ///< classes, model or settings too
 };
 
+inline constexpr double kNoWindowLimit = 2;  ///< a window never gives way to the whole map
+
 struct UpdateParams {
   unsigned threads = 1;  ///< the result is the same for every number
-  /// Of the tiles: what is expected to need a larger window is computed over the whole map. 2: nothing is.
+  /// Largest window, as a fraction of the tiles. A change that needs a larger one is computed over the whole map.
   double max_window_share = 0.6;
   /// A map of more cluxels, of which all is to be decided, is decided strip by strip.
   std::uint64_t whole_cluxels = 1'500'000;

@@ -149,9 +149,10 @@ void WindowStatements::grow(const TileSet& tiles) {
   }
 }
 
-/// Whether a statement or a changed object lies in what is decided, and in tiles that need not be.
-bool WindowStatements::concernsMixed(const MapWindow& window, const WindowChange& change,
-                                     const WindowDecision& decision, const Touched& touched) {
+/// Grows by the tiles of statements and changed objects that lie in what is decided, and in tiles that need not be.
+/// True when there are such: the decision cannot be used.
+bool WindowStatements::growByPartlyDecided(const MapWindow& window, const WindowChange& change,
+                                           const WindowDecision& decision, const Touched& touched) {
   PointOwners owners(transaction_, stages_, parsed_.model.perception.thin, clouds_);
   TileSet more;
   for (const Statement& statement : statements_) {
@@ -182,14 +183,14 @@ bool WindowStatements::concernsMixed(const MapWindow& window, const WindowChange
 bool WindowStatements::apply(const MapWindow& window, const WindowChange& change, WindowDecision& decision) {
   if (statements_.empty() && records_.empty()) return true;
   const Touched touched(window, decision);
-  if (concernsMixed(window, change, decision, touched)) return false;
+  if (growByPartlyDecided(window, change, decision, touched)) return false;
   std::vector<Statement> about;
   std::copy_if(statements_.begin(), statements_.end(), std::back_inserter(about),
                [&](const Statement& statement) { return concerned_.contains(statement.id()); });
   if (needs_whole_map_) return false;
   PointOwners owners(transaction_, stages_, parsed_.model.perception.thin, clouds_);
   applied_ = applyStatements(about, decision.objects, window.scene, parsed_.rules.catalogue, owners, clouds_);
-  if (!changesWholeObjects(window, decision)) return false;
+  if (growByPartlyChanged(window, decision)) return false;
   decision.objects = std::move(applied_.objects);
   addAboutWideObjects();
   return true;
@@ -223,8 +224,9 @@ bool WindowStatements::saysOfWideObject(const ContentHash& id) const {
   return false;
 }
 
-/// Whether all of each object that a statement changes is decided anew.
-bool WindowStatements::changesWholeObjects(const MapWindow& window, const WindowDecision& decision) {
+/// Grows by the tiles of objects that statements change and of which not all is decided anew. True when there are such,
+/// or when the whole map has to be computed: the decision cannot be used.
+bool WindowStatements::growByPartlyChanged(const MapWindow& window, const WindowDecision& decision) {
   const perception::SceneCluxels& all = window.scene.cluxels;
   TileSet more;
   for (const OverruledObject& overruled : applied_.overruled) {
@@ -235,7 +237,7 @@ bool WindowStatements::changesWholeObjects(const MapWindow& window, const Window
     for (const std::uint32_t cluxel : members) more.insert(all.name[cluxel].tile);
   }
   grow(more);
-  return !needs_whole_map_ && more.empty();
+  return needs_whole_map_ || !more.empty();
 }
 
 std::vector<ContentHash> WindowStatements::exchanged() const {

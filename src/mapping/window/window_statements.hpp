@@ -45,9 +45,9 @@ class WindowStatements {
   struct Touched;
 
   void grow(const perception::TileSet& tiles);
-  bool concernsMixed(const MapWindow& window, const WindowChange& change, const WindowDecision& decision,
-                     const Touched& touched);
-  bool changesWholeObjects(const MapWindow& window, const WindowDecision& decision);
+  bool growByPartlyDecided(const MapWindow& window, const WindowChange& change, const WindowDecision& decision,
+                           const Touched& touched);
+  bool growByPartlyChanged(const MapWindow& window, const WindowDecision& decision);
   void addAboutWideObjects();
   bool saysOfWideObject(const ContentHash& id) const;
 
