@@ -10,17 +10,16 @@
 
 #include "base/nearest_name.hpp"
 #include "cluxel/error.hpp"
-#include "mapping/change/statement_change.hpp"
 #include "mapping/facts/ask_replay.hpp"
 #include "mapping/map_part.hpp"
 #include "mapping/statements/applied_statements.hpp"
-#include "mapping/thing_history.hpp"
-#include "rdf/map_iris.hpp"
+#include "rdf/vocabulary.hpp"
 #include "rules/decide/local_reach.hpp"
 #include "rules/explain/part_run.hpp"
 #include "rules/explain/path_tree.hpp"
 #include "rules/explain/why_not.hpp"
 #include "rules/language/rule_loader.hpp"
+#include "tasks/stated_of_things.hpp"
 #include "tasks/thing_names.hpp"
 
 namespace cluxel::tasks {
@@ -109,34 +108,6 @@ std::optional<rules::PartRun> runAround(const mapping::MapReader& map, const Exp
   const std::vector<std::uint64_t> traces = map.decisionTraces();
   const std::vector<rules::SemanticObject> by_rules = map.objectsByRules();
   return runInPart(map.scene(), rules, {traces, by_rules}, primitivesIn(map.scene(), map.objects(), what));
-}
-
-bool isByOperator(const mapping::MapReader& map, const ContentHash& object) {
-  const auto& overruled = map.overruled();
-  return std::any_of(overruled.begin(), overruled.end(), [&](const auto& changed) { return changed.now == object; });
-}
-
-/// The object's thing, and what operators state about it.
-std::string historyOf(const mapping::MapReader& map, const ContentHash& object, nlohmann::ordered_json& json) {
-  const std::vector<mapping::Thing> things = mapping::ThingLookup(map.quads()).thingsOf(object);
-  const std::string thing = things.empty() ? rdf::iriOfThing(object) : things.front().iri;
-  json["thing"] = thing;
-  std::string text = "thing/" + mapping::localName(thing) + "\n";
-  for (const mapping::KnownStatement& known : mapping::knownStatements(map.quads())) {
-    if (known.object != rdf::iriOfObject(object)) continue;
-    json["stated"].push_back({{"statement", known.statement.id().hex()},
-                              {"states", textOf(known.statement)},
-                              {"effect", known.effect},
-                              {"author", known.author},
-                              {"statedAt", known.stated_at},
-                              {"rulesSay", known.rules_class},
-                              {"contradictsRules", known.contradicts}});
-    text += "stated" + (known.author.empty() ? "" : " by " + known.author) +
-            (known.stated_at.empty() ? "" : " " + known.stated_at) + ": " + textOf(known.statement) + " (" +
-            known.effect + (known.contradicts ? ", against the rules" : "") + ")\n";
-  }
-  if (isByOperator(map, object)) text += "without the statement the rules decide:\n";
-  return text;
 }
 
 /// An explanation, with the part of the scene that its numbers refer to when it is not the whole.
@@ -311,6 +282,8 @@ ExplanationTexts explainThing(const mapping::MapReader& map, const std::string& 
   if (named.object) {
     json["number"] = named.number;
     text = "object #" + std::to_string(named.number) + "\n" + historyOf(map, *named.object, json) + text;
+  } else {
+    text = statedOf(map, rules, explained.explanation.object, json) + text;
   }
   return {std::move(text), json.dump(2)};
 }

@@ -115,8 +115,16 @@ TEST_F(StateCommand, RefusesWhatCannotBeMeant) {
 
 TEST_F(StateCommand, OfARemovedObjectItIsToldWhyItIsGone) {
   const std::string tree = one("Tree");
+  const std::string found = query("stated.clx",
+                                  "SELECT ?p { <https://w3id.org/cluxel/map/object/" + tree +
+                                      "> clx:hasPart?/clx:hasPrimitive ?p } ORDER BY ?p LIMIT 1",
+                                  "--format csv")
+                                .out;
+  const std::string primitive = found.substr(found.rfind("primitive/"), 42);
   ASSERT_EQ(state("--object " + tree + " --is-not Tree").code, 0);
   expectError(run("explain " + map().string() + " " + tree.substr(0, 8)), 3, "was removed by an operator statement");
+  EXPECT_NE(run("explain " + map().string() + " " + primitive).out.find("an operator statement removed the object"),
+            std::string::npos);
 }
 
 TEST_F(StateCommand, RefusesToTakeAllGroundAway) {

@@ -153,5 +153,17 @@ TEST_F(StatementHistory, AWithdrawalThatIsNamedTwiceIsOne) {
   EXPECT_TRUE(statementsOf(map()).empty());
 }
 
+TEST_F(StatementHistory, StaysWhenTheMapIsBuiltAnew) {
+  const Statement kept = about(0, StatementKind::Is, "StreetLamp"), gone = about(1, StatementKind::Is, "Bush");
+  state(map(), {kept, gone});
+  state(map(), {}, {gone.id()}, "ben");
+  const auto before = recordOf(MapReader(map()).quads(), kept.id());
+  buildMap(scansOf(campus->files()), *inputs, map(), {.force = true}, silence());
+  const MapReader reader(map());
+  EXPECT_EQ(recordOf(reader.quads(), kept.id()).author, "anna");
+  EXPECT_EQ(recordOf(reader.quads(), kept.id()).stated_at, before.stated_at);
+  EXPECT_EQ(withdrawnStatements(reader.quads()), std::vector{gone.id()});
+}
+
 }  // namespace
 }  // namespace cluxel::mapping

@@ -8,6 +8,7 @@
 #include "mapping/build/operator_statements.hpp"
 #include "mapping/map_tables.hpp"
 #include "mapping/statements/statement.hpp"
+#include "mapping/statements/statement_history.hpp"
 #include "rdf/file/map_check.hpp"
 #include "rdf/file/map_replacement.hpp"
 #include "rdf/store/quad_store.hpp"
@@ -142,6 +143,7 @@ void WorkFile::takeOverStatements(rdf::WriteTransaction& into, bool drop, Progre
   clearOperatorStatements(into);
   if (drop) return;
   const rdf::QuadReader old(static_cast<const rdf::ReadTransaction&>(*replaced_));
+  copyStatementHistory(old, into);
   if (const std::uint64_t quads = copyOperatorStatements(old, into); quads > 0)
     sink.note(std::to_string(storedStatements(old).size()) + " operator statements of the old map are kept (" +
               std::to_string(quads) + " quads)");

@@ -118,6 +118,15 @@ void recordStatements(rdf::WriteTransaction& transaction, const std::vector<Cont
   writer.flush();
 }
 
+void copyStatementHistory(const rdf::QuadReader& from, rdf::WriteTransaction& into) {
+  StatementWriter writer(into);
+  std::vector<ContentHash> ids = withdrawnStatements(from);
+  for (const Statement& statement : storedStatements(from)) ids.push_back(statement.id());
+  for (const ContentHash& id : ids)
+    for (const Quad& quad : quadsAboutStatement(from, id, rdf::vocabulary::kGraphHistory)) writer.add(quad);
+  writer.flush();
+}
+
 std::vector<ContentHash> withdrawnAmong(std::span<const rdf::QuadReader* const> maps) {
   const auto made = lastTimes(maps, "generatedAtTime"), withdrawn = lastTimes(maps, "invalidatedAtTime");
   std::set<ContentHash> ids;

@@ -25,6 +25,9 @@ void eraseStatement(rdf::WriteTransaction& transaction, const ContentHash& id);
 void recordStatements(rdf::WriteTransaction& transaction, const std::vector<ContentHash>& made,
                       const std::vector<ContentHash>& withdrawn, const std::string& author);
 
+/// Adds what the history of another map knows of its statements, and of those that were withdrawn there.
+void copyStatementHistory(const rdf::QuadReader& from, rdf::WriteTransaction& into);
+
 /// Those statements of maps that one of the maps has withdrawn after any of them made it, ascending. A statement whose
 /// time nobody recorded was made before every withdrawal. Its result is independent of the order of the maps.
 std::vector<ContentHash> withdrawnAmong(std::span<const rdf::QuadReader* const> maps);
