@@ -121,8 +121,8 @@ TEST(LocalRun, IsRefusedWhereTheWindowOrTheTracesDoNotShowIt) {
 TEST(LocalReach, FollowsFromTheRulesOrIsRefusedWithTheReason) {
   EXPECT_NEAR(localReach(rulesOfLoneGround()).reach_m.value(), 6.15, 1e-9) << "as far as something may hide an end";
   RuleSet touching_far = rulesOfLoneGround();
-  touching_far.contact_m = 7;
-  EXPECT_NEAR(localReach(touching_far).reach_m.value(), 7, 1e-9) << "as far as volumes of the model touch";
+  touching_far.contact_m = 5;
+  EXPECT_NEAR(localReach(touching_far).reach_m.value(), 10, 1e-9) << "twice as far as volumes of the model touch";
   EXPECT_EQ(strataOfLoneSeeds(rulesOfLoneGround()), 1U);
   EXPECT_EQ(strataOfLoneSeeds(rulesOf("[clx:Pole]", R"(
   - { id: a, class: clx:Pole, seed: { label: column }, tree: { accept: { confidence: 0.5 } } }
