@@ -75,6 +75,7 @@ int runProgram(int argc, char** argv) {
       ->check(wholeWithin({.min = 0, .max = 1024}));
   app.fallthrough();
   addCommands(app, session);
+  refuseEmptyValues(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& fault) {

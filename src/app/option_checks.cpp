@@ -124,6 +124,14 @@ CLI::Validator named() {
   return {fault, "NAME", "named"};
 }
 
+void refuseEmptyValues(CLI::App& program) {
+  const CLI::Validator filled(
+      [](std::string& text) { return text.empty() ? std::string("the value is empty") : std::string(); }, "", "filled");
+  for (CLI::Option* option : program.get_options([](CLI::Option*) { return true; }))
+    if (option->get_expected_max() > 0) option->check(filled);
+  for (CLI::App* command : program.get_subcommands([](CLI::App*) { return true; })) refuseEmptyValues(*command);
+}
+
 CLI::Validator validText() {
   const auto fault = [](std::string& text) {
     if (text.empty()) return std::string("the text is empty");

@@ -58,6 +58,8 @@ CLI::Validator wordFor(const std::map<std::string, Enum>& values, const std::str
 
 /// For names of output: an empty name usually comes from an unset shell variable.
 CLI::Validator named();
+/// The same for all options and arguments of a program and its commands, after their other checks.
+void refuseEmptyValues(CLI::App& program);
 /// For texts that go into a map.
 CLI::Validator validText();
 

@@ -83,6 +83,12 @@ TEST_F(OptionValues, ThatAreNoNumbersAreRefusedByEveryOptionThatTakesOne) {
 
 TEST_F(OptionValues, ThatAreWrongAreNamedWithWhatTheOptionTakes) {
   const std::vector<std::pair<std::string, std::string>> cases{
+      {"explain map.clx 1 --why-not ''", "--why-not: the value is empty"},
+      {"state map.clx --object 1 --is ''", "--is: the value is empty"},
+      {"extend map.clx ''", "scans: the value is empty"},
+      {"extend '' s", "map: the value is empty"},
+      {"rules apply map.clx --rules ''", "--rules: the value is empty"},
+      {"changes map.clx --since ''", "--since: the value is empty"},
       {"search map.clx --for Tree --view nan", "search: --view: write a number from 1 to 100, not nan"},
       {"search map.clx --for Tree --view 0", "--view: write a number from 1 to 100, not 0"},
       {"search map.clx --for Tree --stops 0", "--stops: write a whole number from 1 to 100, not 0"},
