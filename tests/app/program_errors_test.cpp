@@ -116,6 +116,7 @@ TEST_F(Program, ExplainsWhyNotAndDrawsTrees) {
   EXPECT_NE(why.out.find("why not clx:Tree:"), std::string::npos);
   EXPECT_TRUE(run("explain " + map() + " '#0' --dot").out.starts_with("digraph"));
   expectError(run("explain " + map() + " '#0' --why-not Tre"), 3, "Tree");
+  expectError(run("explain " + map() + " map/root"), 3, "is a Map, neither an object nor a primitive");
   expectError(run("explain " + map() + " '#0' --dot --json"), 2, "--dot");
 }
 
