@@ -17,7 +17,16 @@ namespace fs = std::filesystem;
 
 namespace {
 
+/// The text of a file that counts twice would make another map of the same inputs.
+void requireDifferent(const std::vector<fs::path>& files) {
+  std::error_code ignored;
+  for (auto file = files.begin(); file != files.end(); ++file)
+    if (std::any_of(files.begin(), file, [&](const fs::path& other) { return fs::equivalent(*file, other, ignored); }))
+      throw Error(ErrorKind::InvalidArgument, file->string() + ": is named twice");
+}
+
 std::vector<NamedText> readAll(const std::vector<fs::path>& files) {
+  requireDifferent(files);
   std::vector<NamedText> texts;
   texts.reserve(files.size());
   for (const fs::path& file : files) texts.push_back({file.string(), readFile(file)});

@@ -116,6 +116,8 @@ TEST_F(Program, ExplainsWhyNotAndDrawsTrees) {
   EXPECT_NE(why.out.find("why not clx:Tree:"), std::string::npos);
   EXPECT_TRUE(run("explain " + map() + " '#0' --dot").out.starts_with("digraph"));
   expectError(run("explain " + map() + " '#0' --why-not Tre"), 3, "Tree");
+  const std::string rules = (test::sourceFolder() / "rules/outdoor.rules.yaml").string();
+  expectError(run("rules apply " + map() + " --dry-run --rules " + rules + " " + rules), 2, "is named twice");
   expectError(run("explain " + map() + " map/root"), 3, "is a Map, neither an object nor a primitive");
   expectError(run("explain " + map() + " '#0' --dot --json"), 2, "--dot");
 }
