@@ -13,14 +13,18 @@ namespace {
 
 using rdf::vocabulary::kGraphHistory;
 
-std::optional<rdf::TermId> provenanceTerm(const rdf::QuadReader& quads, std::string_view local) {
-  return quads.idOf(Term::iri(provenance(local)));
+std::optional<rdf::TermId> provenanceTerm(const rdf::QuadReader& quads, std::string_view name) {
+  return quads.idOf(Term::iri(name.find(':') == std::string_view::npos ? provenance(name) : std::string(name)));
 }
 
 }  // namespace
 
 std::string provenance(std::string_view local) {
   return std::string(rdf::vocabulary::kProv).append(local);
+}
+
+std::string isReplacedBy() {
+  return std::string(rdf::vocabulary::kDcTerms) + "isReplacedBy";
 }
 
 std::optional<ContentHash> hashIn(const std::string& iri, std::string_view kind) {
@@ -45,7 +49,7 @@ std::vector<Quad> quadsAbout(const rdf::QuadReader& quads, const std::string& su
 
 void forEachHistoryLink(const rdf::QuadReader& quads, std::string_view property,
                         const std::function<void(const Term& subject, const Term& object)>& visit) {
-  const auto graph = quads.idOf(Term::iri(kGraphHistory)), predicate = quads.idOf(Term::iri(provenance(property)));
+  const auto graph = quads.idOf(Term::iri(kGraphHistory)), predicate = provenanceTerm(quads, property);
   if (!graph || !predicate) return;
   rdf::QuadCursor cursor = quads.scan({.s = {}, .p = *predicate, .o = {}, .g = *graph});
   for (rdf::QuadIds quad; cursor.next(quad);) visit(quads.termOf(quad.s), quads.termOf(quad.o));
@@ -84,7 +88,8 @@ ThingLookup::ThingLookup(const rdf::QuadReader& quads)
       graph_(quads.idOf(Term::iri(kGraphHistory))),
       of_(provenanceTerm(quads, "specializationOf")),
       begin_(provenanceTerm(quads, "generatedAtTime")),
-      end_(provenanceTerm(quads, "invalidatedAtTime")) {}
+      end_(provenanceTerm(quads, "invalidatedAtTime")),
+      replaced_(provenanceTerm(quads, isReplacedBy())) {}
 
 std::vector<Thing> ThingLookup::thingsOf(const ContentHash& object) const {
   std::vector<Thing> things;
@@ -102,6 +107,10 @@ std::optional<std::string> ThingLookup::since(const std::string& thing) const {
 
 std::vector<Term> ThingLookup::endsOf(const std::string& thing) const {
   return valuesOf(thing, end_);
+}
+
+std::vector<Term> ThingLookup::replacementsOf(const std::string& thing) const {
+  return valuesOf(thing, replaced_);
 }
 
 std::vector<ContentHash> ThingLookup::objectsOf(const std::string& thing) const {

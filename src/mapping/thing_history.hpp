@@ -24,11 +24,13 @@ using Things = std::map<ContentHash, std::vector<Thing>>;
 
 /// A property of PROV.
 std::string provenance(std::string_view local);
+/// dcterms:isReplacedBy: the thing whose object continues that of a thing that has ended.
+std::string isReplacedBy();
 /// The hash in the IRI of a resource of the map, when it is of this kind ("object", "thing").
 std::optional<ContentHash> hashIn(const std::string& iri, std::string_view kind);
 /// The quads of one subject in a graph.
 std::vector<Quad> quadsAbout(const rdf::QuadReader& quads, const std::string& subject, std::string_view graph);
-/// Visits the subjects and objects of a property of PROV in graph history.
+/// Visits the subjects and objects of a property in graph history: one of PROV by its local name, or an IRI.
 void forEachHistoryLink(const rdf::QuadReader& quads, std::string_view property,
                         const std::function<void(const Term& subject, const Term& object)>& visit);
 
@@ -50,6 +52,8 @@ class ThingLookup {
   std::optional<std::string> since(const std::string& thing) const;
   /// The recorded ends of a thing.
   std::vector<Term> endsOf(const std::string& thing) const;
+  /// What has replaced a thing.
+  std::vector<Term> replacementsOf(const std::string& thing) const;
   /// The objects of which this is or was a thing.
   std::vector<ContentHash> objectsOf(const std::string& thing) const;
 
@@ -57,7 +61,7 @@ class ThingLookup {
   std::vector<Term> valuesOf(const std::string& subject, std::optional<rdf::TermId> property) const;
 
   const rdf::QuadReader& quads_;
-  std::optional<rdf::TermId> graph_, of_, begin_, end_;
+  std::optional<rdf::TermId> graph_, of_, begin_, end_, replaced_;
 };
 
 }  // namespace cluxel::mapping

@@ -16,6 +16,7 @@ inline constexpr std::string_view kGeo = "http://www.opengis.net/ont/geosparql#"
 inline constexpr std::string_view kGeof = "http://www.opengis.net/def/function/geosparql/";
 inline constexpr std::string_view kSosa = "http://www.w3.org/ns/sosa/";
 inline constexpr std::string_view kProv = "http://www.w3.org/ns/prov#";
+inline constexpr std::string_view kDcTerms = "http://purl.org/dc/terms/";
 inline constexpr std::string_view kSkos = "http://www.w3.org/2004/02/skos/core#";
 
 /// Resources of a map: `…/map/primitive/<hash>`, `…/map/object/<hash>`, `…/map/cloud/<scan id>`, `…/map/observation/…`.

@@ -107,6 +107,19 @@ TEST_F(ThingNames, ComeBackToThoseThatHadThemWhenAJoinIsUndone) {
   EXPECT_EQ(nameOfObject("young"), rdf::iriOfThing(hashOf("young"))) << "though it shares most with what was joined";
 }
 
+TEST_F(ThingNames, LeadToWhatContinuesThemThoughMoreWasDerivedFromThem) {
+  change({thingMembers("old", {20, 21})});
+  change({thingMembers("old", {20, 21}), thingMembers("whole", {1, 2, 3, 4, 5})});
+  change({thingMembers("old", {20, 21}), thingMembers("two", {4, 5}), thingMembers("three", {1, 2, 3})});
+  change({thingMembers("two", {4, 5}), thingMembers("joined", {1, 2, 3, 20, 21})});
+  ASSERT_TRUE(found(rdf::iriOfThing(hashOf("whole")))) << "the two were derived from it, too";
+  EXPECT_EQ(found(rdf::iriOfThing(hashOf("whole")))->object, hashOf("joined"));
+  EXPECT_EQ(found("object/" + hashOf("whole").hex())->object, hashOf("joined"));
+  change({thingMembers("old", {20, 21}), thingMembers("two", {4, 5}), thingMembers("three", {1, 2, 3})});
+  EXPECT_EQ(found(rdf::iriOfThing(hashOf("whole")))->object, hashOf("three"));
+  EXPECT_EQ(found(rdf::iriOfThing(hashOf("old")))->object, hashOf("old"));
+}
+
 TEST_F(ThingNames, EndOnce) {
   change({thingMembers("old", {1, 2}), thingMembers("young", {3, 4, 5})});
   change({thingMembers("joined", {1, 2, 3, 4, 5})});

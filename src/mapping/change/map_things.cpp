@@ -101,24 +101,22 @@ class Naming {
     for (std::size_t a = 0; a < after.size(); ++a) link(after[a].id, *names[a]);
     for (std::size_t b = 0; b < before.size(); ++b) {
       const Thing thing = nameOf(before[b].id);
-      if (isHeld(thing.iri)) continue;
-      if (const auto heir = heirs.heir_of[b]) derive(names[*heir]->iri, thing.iri);
-      end(thing);
+      if (!isHeld(thing.iri)) end(thing, heirs.heir_of[b] ? names[*heirs.heir_of[b]] : std::nullopt);
     }
     writer_.flush();
   }
 
  private:
-  void add(const std::string& subject, std::string_view property, const Term& object) {
-    writer_.add(Quad{Term::iri(subject), Term::iri(provenance(property)), object, Term::iri(kGraphHistory)});
+  void add(const std::string& subject, const std::string& property, const Term& object) {
+    writer_.add(Quad{Term::iri(subject), Term::iri(property), object, Term::iri(kGraphHistory)});
   }
-  void remove(const std::string& subject, std::string_view property, const Term& object) {
-    writer_.remove(rdf::QuadIds{writer_.intern(Term::iri(subject)), writer_.intern(Term::iri(provenance(property))),
+  void remove(const std::string& subject, const std::string& property, const Term& object) {
+    writer_.remove(rdf::QuadIds{writer_.intern(Term::iri(subject)), writer_.intern(Term::iri(property)),
                                 writer_.intern(object), writer_.intern(Term::iri(kGraphHistory))});
   }
   Term timeTerm() const { return Term::literal(time_, rdf::vocabulary::xsd("dateTime")); }
   void derive(const std::string& thing, const std::string& from) {
-    if (thing != from) add(thing, "wasDerivedFrom", Term::iri(from));
+    if (thing != from) add(thing, provenance("wasDerivedFrom"), Term::iri(from));
   }
 
   /// Which objects after are such that there were before the last change: they have things, and were not there now.
@@ -154,8 +152,9 @@ class Naming {
 
   /// The thing goes on: it has not ended.
   std::optional<Thing> held(std::optional<Thing> thing) {
-    if (thing && held_.insert(thing->iri).second)
-      for (const Term& time : stored_.endsOf(thing->iri)) remove(thing->iri, "invalidatedAtTime", time);
+    if (!thing || !held_.insert(thing->iri).second) return thing;
+    for (const Term& time : stored_.endsOf(thing->iri)) remove(thing->iri, provenance("invalidatedAtTime"), time);
+    for (const Term& other : stored_.replacementsOf(thing->iri)) remove(thing->iri, isReplacedBy(), other);
     return thing;
   }
 
@@ -183,7 +182,7 @@ class Naming {
     for (std::uint32_t n = 1; stored_.since(iri) || isHeld(iri); ++n)
       iri = rdf::iriOfThing(ContentHasher().add(object).add(n).finish());
     held_.insert(iri);
-    add(iri, "generatedAtTime", timeTerm());
+    add(iri, provenance("generatedAtTime"), timeTerm());
     return {iri, time_};
   }
 
@@ -193,18 +192,19 @@ class Naming {
     for (const Thing& other : thingsOf(object)) {
       is_linked = is_linked || other.iri == thing.iri;
       if (other.iri == thing.iri) continue;
-      remove(iri, "specializationOf", Term::iri(other.iri));
-      if (isHeld(other.iri)) continue;
-      derive(thing.iri, other.iri);
-      end(other);
+      remove(iri, provenance("specializationOf"), Term::iri(other.iri));
+      if (!isHeld(other.iri)) end(other, thing);
     }
-    if (!is_linked) add(iri, "specializationOf", Term::iri(thing.iri));
+    if (!is_linked) add(iri, provenance("specializationOf"), Term::iri(thing.iri));
   }
 
-  /// A thing that ended earlier keeps that time.
-  void end(const Thing& thing) {
-    if (ended_.insert(thing.iri).second && stored_.endsOf(thing.iri).empty())
-      add(thing.iri, "invalidatedAtTime", timeTerm());
+  /// `heir`: the thing whose object continues that of the one that ends. A thing that ended earlier keeps that time.
+  void end(const Thing& thing, const std::optional<Thing>& heir) {
+    if (!ended_.insert(thing.iri).second) return;
+    if (stored_.endsOf(thing.iri).empty()) add(thing.iri, provenance("invalidatedAtTime"), timeTerm());
+    if (!heir) return;
+    derive(heir->iri, thing.iri);
+    add(thing.iri, isReplacedBy(), Term::iri(heir->iri));
   }
 
   rdf::QuadReader reader_;  ///< sees the state before, since the writer flushes at the end
@@ -253,6 +253,8 @@ Lineage::Lineage(const rdf::QuadReader& quads, const std::vector<ContentHash>& p
   forEachHistoryLink(quads, "wasDerivedFrom", [&](const Term& thing, const Term& from) {
     if (hashIn(thing.text, "thing")) later_.emplace(from.text, thing.text);
   });
+  forEachHistoryLink(quads, isReplacedBy(),
+                     [&](const Term& thing, const Term& heir) { replaced_by_.emplace(thing.text, heir.text); });
 }
 
 Lineage::Meaning Lineage::meaningOf(const std::string& name) const {
@@ -296,7 +298,8 @@ std::optional<FormerName> Lineage::find(const std::string& name) const {
       found.insert(object->second);
       continue;  // the object kept its name; other successors do not matter
     }
-    const auto [begin, end] = later_.equal_range(thing);
+    const auto& later = replaced_by_.contains(thing) ? replaced_by_ : later_;
+    const auto [begin, end] = later.equal_range(thing);
     for (auto next = begin; next != end; ++next)
       if (seen.insert(next->second).second) open.push_back(next->second);
   }

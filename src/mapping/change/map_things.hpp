@@ -57,9 +57,10 @@ class Lineage {
   Meaning meaningOf(const std::string& name) const;
 
   Things things_;
-  std::map<std::string, std::string> times_;       ///< of all things
-  std::map<std::string, ContentHash> object_of_;   ///< present ones, by thing
-  std::multimap<std::string, std::string> later_;  ///< thing → thing that was derived from it
+  std::map<std::string, std::string> times_;             ///< of all things
+  std::map<std::string, ContentHash> object_of_;         ///< present ones, by thing
+  std::multimap<std::string, std::string> later_;        ///< thing → thing that was derived from it
+  std::multimap<std::string, std::string> replaced_by_;  ///< thing that has ended → thing that continues it
 };
 
 }  // namespace cluxel::mapping
