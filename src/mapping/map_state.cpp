@@ -12,7 +12,7 @@ namespace cluxel::mapping {
 namespace {
 
 using Json = nlohmann::json;
-constexpr std::string_view kStateKey = "state", kInputsKey = "inputs";
+constexpr std::string_view kBuildStateKey = "state", kInputsKey = "inputs";
 
 /// Writes every field of a settings struct by name.
 class ParameterWriter : public perception::ParameterVisitor {
@@ -66,11 +66,11 @@ void put(rdf::WriteTransaction& transaction, std::string_view key, const Json& j
 }  // namespace
 
 void storeState(rdf::WriteTransaction& transaction, const MapState& state) {
-  put(transaction, kStateKey, {{"finished", state.is_finished}, {"inputs", state.inputs_hash}});
+  put(transaction, kBuildStateKey, {{"finished", state.is_finished}, {"inputs", state.inputs_hash}});
 }
 
 std::optional<MapState> storedState(const rdf::ReadTransaction& transaction) {
-  const auto bytes = transaction.block(tables::kMeta, kStateKey);
+  const auto bytes = transaction.block(tables::kMeta, kBuildStateKey);
   if (!bytes) return std::nullopt;
   try {
     const Json json = Json::from_cbor(*bytes);

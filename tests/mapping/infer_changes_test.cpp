@@ -265,6 +265,14 @@ TEST(InferChanges, OfRulesThatBindTheirKeyFirstAreInferenceFromScratch) {
   }
 }
 
+TEST(InferChanges, OfRulesOfAnyPropertyAreInferenceFromScratchAndEnd) {
+  ChangingStore store(50, rulesOfAnyProperty());
+  for (int step = 0; step < stepsOf(10, 100) && !testing::Test::HasFatalFailure(); ++step) {
+    store.step();
+    store.expectInferenceFromScratch(step);
+  }
+}
+
 TEST(InferChanges, ARuleThatReadsWhatItDerivesIsNamedAndInferredAnew) {
   ChangingStore store(1, {rule("reach.rq",
                                "CONSTRUCT { ?a clx:reaches ?c } WHERE { { ?a clx:near ?c } UNION "

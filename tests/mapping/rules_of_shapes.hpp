@@ -74,6 +74,14 @@ inline std::vector<NamedText> unboundRules() {
            "CONSTRUCT { ?a clx:at ?b } WHERE { { MINUS { ?a clx:hasPart ?p } ?a a clx:Tree } ?a clx:near ?b }")};
 }
 
+/// Rules that look at any property. They must not find the derivations that they make themselves.
+inline std::vector<NamedText> rulesOfAnyProperty() {
+  return {rule("1.rq", "CONSTRUCT { ?a clx:free ?a } WHERE { ?a ?p ?o }"),
+          rule("2.rq", "CONSTRUCT { ?a clx:tag ?b } WHERE { ?b a clx:Building . ?a !clx:near ?b }"),
+          rule("3.rq", "CONSTRUCT { ?a clx:size 1 } WHERE { { SELECT DISTINCT ?a { ?a ?p ?o } } }"),
+          rule("4.rq", "CONSTRUCT { ?a clx:lone ?b } WHERE { ?a clx:near ?b FILTER NOT EXISTS { ?b ?p ?a } }")};
+}
+
 /// Rules in which these stand behind the key, or do not depend on it.
 inline std::vector<NamedText> boundRules() {
   return {rule("1.rq", "CONSTRUCT { ?a clx:of ?w } WHERE { BIND(2 AS ?w) ?a clx:near ?b }"),

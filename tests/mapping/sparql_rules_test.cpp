@@ -216,6 +216,25 @@ TEST_F(SparqlRules, SeeNothingOfTheHistoryOfBuilds) {
   EXPECT_TRUE(ask("GRAPH " + history + " { ?t clx:sourceFile ?f }")) << "others may ask it";
 }
 
+TEST(SparqlRulesCheck, RefusesPathsWithoutAStepBetweenUnboundVariables) {
+  const auto check = [](const std::string& where) {
+    checkSparqlRules(
+        {{"path.rq",
+          "PREFIX clx: <https://w3id.org/cluxel/ontology#> CONSTRUCT { ?a clx:near ?b } WHERE { " + where + " }"}});
+  };
+  for (const char* where :
+       {"?a clx:on* ?b", "?a clx:on? ?b", "?a clx:on* ?b . ?b clx:on* ?c", "{ ?a clx:on* ?b } MINUS { ?a a clx:Tree }",
+        "?a a clx:Tree . { SELECT ?b (COUNT(?c) AS ?n) { ?b clx:on* ?c } GROUP BY ?b }",
+        "?b a clx:Tree FILTER EXISTS { ?a clx:on* ?c }", "{ ?a clx:on* ?b } UNION { ?a a clx:Tree . ?a clx:on* ?b }"})
+    EXPECT_THROW(check(where), InputError) << where;
+  for (const char* where :
+       {"?a clx:on+ ?b", "?a a clx:Tree . ?a clx:on* ?b", "?b a clx:Tree . ?a clx:on* ?b", "?a clx:on*/clx:near ?b",
+        "?a a clx:Tree . ?a clx:on* ?b . ?b clx:on? ?c", "?a a clx:Tree OPTIONAL { ?a clx:on* ?b }",
+        "{ ?a a clx:Tree } UNION { ?a a clx:Bush } ?a clx:on* ?b", "VALUES ?a { clx:x } ?a clx:on* ?b",
+        "?a clx:near ?b FILTER NOT EXISTS { ?a clx:on* ?c }"})
+    EXPECT_NO_THROW(check(where)) << where;
+}
+
 TEST(SparqlRulesCheck, RefusesBlankNodesInTheTemplate) {
   expectRefusal("CONSTRUCT { [] a clx:Avenue ; clx:hasMember ?t } WHERE { ?t a clx:Tree }", "blank node");
   expectRefusal("CONSTRUCT { ?t clx:partOf _:row } WHERE { ?t a clx:Tree }", "blank node");

@@ -6,6 +6,7 @@
 #include <memory>
 #include <utility>
 
+#include "mapping/inference/rule_limits.hpp"
 #include "sparql/syntax/parser.hpp"
 
 namespace cluxel::mapping {
@@ -87,11 +88,6 @@ class PathExpansion {
   ast::VariableTable& variables_;
 };
 
-bool mayHaveNoStep(const ast::Path& path) {
-  return path.kind == PathKind::ZeroOrMore || path.kind == PathKind::ZeroOrOne ||
-         std::any_of(path.parts.begin(), path.parts.end(), mayHaveNoStep);
-}
-
 /// The properties that a path walks; false when they cannot be told.
 bool addLinks(const ast::Path& path, std::vector<Term>& links) {
   if (path.kind == PathKind::NegatedSet) return false;
@@ -166,6 +162,8 @@ class ShapeWalk {
 
   void run() {
     PathExpansion(shape_.query.variables).group(shape_.query.select.where);
+    refuseUnboundPaths(shape_.query, shape_.rule);
+    hideDerivations(shape_.query);
     if (!shape_.query.dataset.empty()) return never("it names its graphs");
     const ast::GroupPattern* body = bodyOf();
     group(body != nullptr ? *body : shape_.query.select.where, body != nullptr ? Need::Always : Need::No);

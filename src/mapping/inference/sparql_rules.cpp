@@ -154,6 +154,7 @@ void checkSparqlRules(const std::vector<NamedText>& rules) {
   for (const NamedText& rule : rules) {
     requireConstruct(sparql::PreparedQuery(reader, rule.text, ruleOptions(rule)), rule);
     refuseBlankNodes(rule);
+    shapeOf(rule);
   }
 }
 
