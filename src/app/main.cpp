@@ -13,6 +13,7 @@
 #include "app/console/remedy_hint.hpp"
 #include "app/console/usage_fault.hpp"
 #include "app/help/version_text.hpp"
+#include "base/utf8.hpp"
 #include "cluxel/error.hpp"
 
 namespace {
@@ -29,7 +30,7 @@ std::string exitCodesText() {
 }
 
 int fail(ExitCode code, const char* message) {
-  std::fprintf(stderr, "cluxel: %s\n", message);
+  std::fprintf(stderr, "cluxel: %s\n", withoutControls(message).c_str());
   return static_cast<int>(code);
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdio>
 #include <cstring>
 
 namespace cluxel {
@@ -55,6 +56,24 @@ std::optional<std::size_t> firstInvalidUtf8(std::string_view text) {
     i += code_point.bytes;
   }
   return std::nullopt;
+}
+
+std::string withoutControls(std::string_view text) {
+  std::string shown;
+  shown.reserve(text.size());
+  for (std::size_t at = 0; at < text.size();) {
+    const CodePoint point = decodeUtf8(text, at);
+    const std::uint32_t value = point.value;
+    if (isControl(point) && value != '\n' && value != '\t') {
+      std::array<char, 8> escape{};
+      std::snprintf(escape.data(), escape.size(), "\\u%04X", value);
+      shown += escape.data();
+    } else {
+      shown.append(text.substr(at, std::max(point.bytes, 1U)));
+    }
+    at += std::max(point.bytes, 1U);
+  }
+  return shown;
 }
 
 std::size_t countCodePoints(std::string_view text) {

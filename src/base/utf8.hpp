@@ -37,6 +37,15 @@ void appendUtf8(std::string& text, std::uint32_t code_point);
 /// The offset of the first byte that is not part of valid UTF-8. Cost O(length).
 std::optional<std::size_t> firstInvalidUtf8(std::string_view text);
 
+/// U+0000 to U+001F and U+007F to U+009F.
+constexpr bool isControl(CodePoint point) {
+  return point.bytes > 0 && (point.value < 0x20 || (point.value >= 0x7F && point.value < 0xA0));
+}
+
+/// For terminals: control characters but line feed and tab as \u001B, so that no text of a map moves the cursor or sets
+/// colours.
+std::string withoutControls(std::string_view text);
+
 /// The number of code points of valid UTF-8.
 std::size_t countCodePoints(std::string_view text);
 

@@ -56,6 +56,16 @@ TEST_F(StateCommand, ANewLabelReplacesTheEarlierOneAndNotesAreAdded) {
   expectError(state(tree + " --label east --label west"), 2, "state: --label is given 2 times; give it once");
 }
 
+TEST_F(StateCommand, ALabelDoesNotControlTheTerminal) {
+  const std::string tree = one("Tree");
+  const Outcome stated = state("--object " + tree + " --label \"$(printf 'a\\033[31mred\\007\\302\\233')\"");
+  ASSERT_EQ(stated.code, 0) << stated.err;
+  for (const std::string& shown :
+       {stated.out, stated.err, state("--list").out, run("explain " + map().string() + " " + tree).out})
+    EXPECT_EQ(shown.find_first_of("\033\007"), std::string::npos) << shown;
+  EXPECT_THAT(state("--list").out, HasSubstr("a\\u001B[31mred\\u0007\\u009B"));
+}
+
 TEST_F(StateCommand, TellsWhichObjectAStatementIsAbout) {
   const std::string tree = one("Tree"), other = path("other.clx").string(), merged = path("merged.clx").string();
   fs::copy_file(map(), other, fs::copy_options::overwrite_existing);

@@ -3,6 +3,7 @@
 // would reverse the decision.
 #include "app/command.hpp"
 #include "app/map_condition.hpp"
+#include "base/utf8.hpp"
 #include "cluxel/error.hpp"
 #include "tasks/explanation.hpp"
 #include "tasks/thing_names.hpp"
@@ -28,7 +29,7 @@ ExitCode explainOne(const ExplainOptions& options, Session& session) {
     const tasks::ExplanationTexts texts = options.why_not.empty()
                                               ? tasks::explainThing(map, options.name)
                                               : tasks::explainWhyNot(map, options.name, options.why_not);
-    print(session.json ? texts.json : texts.text);
+    print(session.json ? texts.json : withoutControls(texts.text));
   }
   return ExitCode::Done;
 }

@@ -6,6 +6,7 @@
 #include "app/commands/statement_list.hpp"
 #include "app/shared_options.hpp"
 #include "base/file_bytes.hpp"
+#include "base/utf8.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/build/operator_statements.hpp"
 #include "mapping/change/statement_change.hpp"
@@ -158,7 +159,7 @@ ExitCode change(const StateOptions& options, Session& session) {
   if (!session.json)
     for (const mapping::StatementOutcome& outcome : report.statements)
       for (const Statement& added : edit.added)
-        if (added.id() == outcome.statement.id()) print(lineOf(outcome));
+        if (added.id() == outcome.statement.id()) print(withoutControls(lineOf(outcome)));
   printChange(options.map, report, params, session);
   return ExitCode::Done;
 }

@@ -2,6 +2,7 @@
 // Lists statements. A statement that contradicts the rules is marked.
 #include "app/commands/statement_list.hpp"
 
+#include "base/utf8.hpp"
 #include "mapping/map_reader.hpp"
 #include "rdf/map_iris.hpp"
 
@@ -51,7 +52,7 @@ Json jsonOf(const mapping::StatementOutcome& outcome) {
 
 void printStatements(const std::vector<KnownStatement>& statements, const Session& session) {
   if (!session.json) {
-    for (const KnownStatement& known : statements) print(lineOfKnown(known));
+    for (const KnownStatement& known : statements) print(withoutControls(lineOfKnown(known)));
     if (statements.empty()) print("no operator statements");
     return;
   }

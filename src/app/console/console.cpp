@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "app/command.hpp"
+#include "base/utf8.hpp"
 
 namespace cluxel::app {
 
@@ -34,7 +35,7 @@ void Console::progress(std::string_view stage, std::size_t done, std::size_t tot
 
 void Console::note(std::string_view message) {
   clearLine();
-  std::fprintf(stderr, "note: %.*s\n", static_cast<int>(message.size()), message.data());
+  std::fprintf(stderr, "note: %s\n", withoutControls(message).c_str());
 }
 
 unsigned Session::threadCount() const {

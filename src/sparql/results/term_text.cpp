@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cstdio>
 
+#include "base/utf8.hpp"
 #include "rdf/iri.hpp"
 #include "sparql/syntax/character_class.hpp"
 
@@ -290,7 +291,12 @@ void appendPlain(std::string& text, const rdf::TermView& term, const PrefixList&
     text.append(digits.data(), static_cast<std::size_t>(length));
     return;
   }
-  for (const char c : term.text) text += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+  for (std::size_t at = 0; at < term.text.size();) {
+    const CodePoint point = decodeUtf8(term.text, at);
+    const std::uint32_t bytes = std::max(point.bytes, 1U);
+    text.append(isControl(point) ? " " : std::string_view(term.text).substr(at, bytes));
+    at += bytes;
+  }
   if (!term.language.empty()) text.append("@").append(term.language);
 }
 
