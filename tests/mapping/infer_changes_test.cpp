@@ -265,6 +265,17 @@ TEST(InferChanges, OfRulesThatBindTheirKeyFirstAreInferenceFromScratch) {
   }
 }
 
+TEST(InferChanges, OfRulesThatAskOutsideOfTheirPatternsAreInferenceFromScratch) {
+  for (const NamedText& rule : rulesThatAskOutside()) {
+    ChangingStore store(60, {rule});
+    for (int step = 0; step < stepsOf(20, 200) && !testing::Test::HasFatalFailure(); ++step) {
+      SCOPED_TRACE(rule.name);
+      store.step();
+      store.expectInferenceFromScratch(step);
+    }
+  }
+}
+
 TEST(InferChanges, OfRulesOfAnyPropertyAreInferenceFromScratchAndEnd) {
   ChangingStore store(50, rulesOfAnyProperty());
   for (int step = 0; step < stepsOf(10, 100) && !testing::Test::HasFatalFailure(); ++step) {

@@ -74,12 +74,32 @@ inline std::vector<NamedText> unboundRules() {
            "CONSTRUCT { ?a clx:at ?b } WHERE { { MINUS { ?a clx:hasPart ?p } ?a a clx:Tree } ?a clx:near ?b }")};
 }
 
+/// Rules with EXISTS outside of their patterns, and with a BIND that sees a variable before it is bound.
+inline std::vector<NamedText> rulesThatAskOutside() {
+  return {rule("1.rq",
+               "CONSTRUCT { ?a clx:size ?n } WHERE { { SELECT ?a (COUNT(?b) AS ?n) { ?a clx:near ?b } GROUP BY ?a "
+               "HAVING(EXISTS { ?a clx:hasPart ?p }) } }"),
+          rule("2.rq",
+               "CONSTRUCT { ?a clx:tag ?e } WHERE { { SELECT ?a (COUNT(?b) AS ?n) { ?a clx:near ?b } GROUP BY ?a } "
+               "BIND(EXISTS { ?a clx:hasPart ?p } AS ?e) }"),
+          rule("3.rq",
+               "CONSTRUCT { ?a clx:of ?e } WHERE { ?a clx:near ?c { SELECT ?a (EXISTS { ?a clx:hasPart ?p } AS ?e) "
+               "{ ?a clx:near ?b } } }"),
+          rule("4.rq",
+               "CONSTRUCT { ?a clx:at ?e } WHERE { { SELECT ?a ?e { ?a clx:near ?b } GROUP BY ?a "
+               "(EXISTS { ?a clx:hasPart ?p } AS ?e) } }"),
+          rule("5.rq",
+               "CONSTRUCT { ?a clx:far ?y } WHERE { ?a clx:near ?h . BIND(BOUND(?x) AS ?b) ?x clx:hasPart ?y "
+               "FILTER(!?b) }")};
+}
+
 /// Rules that look at any property. They must not find the derivations that they make themselves.
 inline std::vector<NamedText> rulesOfAnyProperty() {
   return {rule("1.rq", "CONSTRUCT { ?a clx:free ?a } WHERE { ?a ?p ?o }"),
           rule("2.rq", "CONSTRUCT { ?a clx:tag ?b } WHERE { ?b a clx:Building . ?a !clx:near ?b }"),
           rule("3.rq", "CONSTRUCT { ?a clx:size 1 } WHERE { { SELECT DISTINCT ?a { ?a ?p ?o } } }"),
-          rule("4.rq", "CONSTRUCT { ?a clx:lone ?b } WHERE { ?a clx:near ?b FILTER NOT EXISTS { ?b ?p ?a } }")};
+          rule("4.rq", "CONSTRUCT { ?a clx:lone ?b } WHERE { ?a clx:near ?b FILTER NOT EXISTS { ?b ?p ?a } }"),
+          rule("5.rq", "CONSTRUCT { ?a clx:at ?c } WHERE { ?a a ?c }")};
 }
 
 /// Rules in which these stand behind the key, or do not depend on it.

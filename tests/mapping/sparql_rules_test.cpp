@@ -218,7 +218,7 @@ TEST_F(SparqlRules, SeeNothingOfTheHistoryOfBuilds) {
 
 TEST(SparqlRulesCheck, RefusesPathsWithoutAStepBetweenUnboundVariables) {
   const auto check = [](const std::string& where) {
-    checkSparqlRules(
+    checkNewSparqlRules(
         {{"path.rq",
           "PREFIX clx: <https://w3id.org/cluxel/ontology#> CONSTRUCT { ?a clx:near ?b } WHERE { " + where + " }"}});
   };
@@ -231,7 +231,8 @@ TEST(SparqlRulesCheck, RefusesPathsWithoutAStepBetweenUnboundVariables) {
        {"?a clx:on+ ?b", "?a a clx:Tree . ?a clx:on* ?b", "?b a clx:Tree . ?a clx:on* ?b", "?a clx:on*/clx:near ?b",
         "?a a clx:Tree . ?a clx:on* ?b . ?b clx:on? ?c", "?a a clx:Tree OPTIONAL { ?a clx:on* ?b }",
         "{ ?a a clx:Tree } UNION { ?a a clx:Bush } ?a clx:on* ?b", "VALUES ?a { clx:x } ?a clx:on* ?b",
-        "?a clx:near ?b FILTER NOT EXISTS { ?a clx:on* ?c }"})
+        "?a clx:near ?b FILTER NOT EXISTS { ?a clx:on* ?c }", "?a (clx:on?/clx:near)+ ?b",
+        "?a (clx:near|(clx:on?/clx:hasPart)) ?b"})
     EXPECT_NO_THROW(check(where)) << where;
 }
 

@@ -252,6 +252,33 @@ TEST_F(ThingsOfMaps, KeepTheirNamesWhenAMapChanges) {
   EXPECT_GT(derived_, 10U);
 }
 
+TEST_F(ThingsOfMaps, OfMergedMapsEndOnceAndHaveNoObjectThatIsGone) {
+  const fs::path a = built(0, 3, "a"), b = folder.path() / "b", merged = folder.path() / "merged";
+  fs::copy_file(a, b);
+  const ScanId second = scans(1, 2).load(0).id;
+  for (const fs::path& map : {a, b}) retractScans(map, {second}, {}, silence());
+  extendMap(a, scans(3, 4), {}, silence());
+  extendMap(a, scans(1, 2), {}, silence());
+  buildMap(scansOf({campus->files()[0], campus->files()[1], campus->files()[3]}), *inputs, folder.path() / "c", {},
+           silence());
+  mergeMaps({{a}, {b}, {folder.path() / "c"}}, merged, {}, silence());
+  expectNothingStale(merged);
+  const MapReader reader(merged);
+  const ThingLookup lookup(reader.quads());
+  const auto present = std::set<ContentHash>(reader.objectIds().begin(), reader.objectIds().end());
+  std::size_t ended = 0;
+  for (const auto& [thing, time] : timesOfThings(reader.quads())) {
+    EXPECT_LE(lookup.endsOf(thing).size(), 1U) << thing;
+    ended += lookup.endsOf(thing).size();
+  }
+  EXPECT_GT(ended, 0U);
+  forEachHistoryLink(reader.quads(), "wasInvalidatedBy", [&](const Term& object, const Term&) {
+    EXPECT_FALSE(present.contains(*hashIn(object.text, "object"))) << object.text << " is there";
+  });
+  forEachHistoryLink(reader.quads(), "wasDerivedFrom",
+                     [](const Term& object, const Term& from) { EXPECT_NE(object.text, from.text); });
+}
+
 /// Other cells of the grid have other seeds, and things are told by where they are.
 TEST_F(ThingsOfMaps, KeepTheirNamesWhenAllScansMoveAlike) {
   const fs::path map = built(0, 4, "map"), copy = folder.path() / "copy", moved = folder.path() / "moved";

@@ -82,7 +82,7 @@ rules::ClassCatalogue catalogueFor(const RulesOptions& options, const DataHome& 
 std::vector<Diagnostic> checkSparqlRule(const fs::path& file, const rdf::OntologyView& ontology) {
   const mapping::NamedText rule{file.string(), readFile(file)};
   try {
-    mapping::checkSparqlRules({rule});
+    mapping::checkNewSparqlRules({rule});
     return mapping::checkRuleNames(rule.name, rule.text, ontology);
   } catch (const InputError& fault) {
     return fault.diagnostics();

@@ -23,6 +23,7 @@
 #include "mapping/clouds/scan_store.hpp"
 #include "mapping/facts/map_history.hpp"
 #include "mapping/facts/semantic_layer.hpp"
+#include "mapping/inference/sparql_rules.hpp"
 #include "mapping/layers/stored_layers.hpp"
 #include "mapping/map_state.hpp"
 #include "mapping/statements/stated_subjects.hpp"
@@ -222,6 +223,7 @@ BuildReport built(const scan::ScanSet& scans, const MapInputs& inputs, const fs:
   complete.crs = scans.crs();
   sink.note(describeFiles(complete));
   if (!complete.crs.empty()) sink.note("coordinate system of the map: " + complete.crs);
+  checkNewSparqlRules(complete.sparql_rules);
   const ParsedInputs parsed = parseInputs(complete);
   // A faulty statement is refused before anything is written.
   for (const Statement& statement : statementsAmong(params.statements)) {

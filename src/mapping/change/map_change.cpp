@@ -11,6 +11,7 @@
 #include "mapping/change/place_order.hpp"
 #include "mapping/change/scan_additions.hpp"
 #include "mapping/facts/map_history.hpp"
+#include "mapping/inference/sparql_rules.hpp"
 #include "mapping/map_state.hpp"
 
 namespace cluxel::mapping {
@@ -220,6 +221,7 @@ ChangeReport appliedTo(const fs::path& file, const std::function<MapInputs(MapIn
   inputs.map_origin = editor.inputs().inputs.map_origin;
   inputs.crs = editor.inputs().inputs.crs;
   if (inputs.hash() == editor.inputs().inputs.hash()) return editor.takeReport();
+  if (inputs.sparql_rules != editor.inputs().inputs.sparql_rules) checkNewSparqlRules(inputs.sparql_rules);
   editor.setInputs(parseInputs(inputs));
   rdf::WriteTransaction transaction = editor.begin();
   editor.commit(transaction, "rules apply", {}, {});

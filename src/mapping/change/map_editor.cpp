@@ -20,6 +20,7 @@
 #include "mapping/change/map_things.hpp"
 #include "mapping/facts/map_history.hpp"
 #include "mapping/layers/semantic_state.hpp"
+#include "mapping/layers/stored_layers.hpp"
 #include "mapping/map_state.hpp"
 #include "mapping/map_tables.hpp"
 #include "mapping/strips/map_strips.hpp"
@@ -290,6 +291,7 @@ void MapEditor::writeDeferredThings() {
   report_.objects = compareObjects(report_.before, report_.after);
   noteStatements();
   if (!last_activity_.empty()) addLineage(transaction, last_activity_, report_.objects);
+  removeEndsOf(transaction, storedObjectIds(transaction));
   writeThings(transaction, dateTimeText(secondsNow()), report_.before, report_.after, ObjectsOf::SeveralMaps);
   if (!params_.dry_run) transaction.commit();
 }

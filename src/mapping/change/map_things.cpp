@@ -100,8 +100,10 @@ class Naming {
     }
     for (std::size_t a = 0; a < after.size(); ++a) link(after[a].id, *names[a]);
     for (std::size_t b = 0; b < before.size(); ++b) {
-      const Thing thing = nameOf(before[b].id);
-      if (!isHeld(thing.iri)) end(thing, heirs.heir_of[b] ? names[*heirs.heir_of[b]] : std::nullopt);
+      std::vector<Thing> things = thingsOf(before[b].id);  // two where several maps named the object
+      if (things.empty()) things = {nameOf(before[b].id)};
+      for (const Thing& thing : things)
+        if (!isHeld(thing.iri)) end(thing, heirs.heir_of[b] ? names[*heirs.heir_of[b]] : std::nullopt);
     }
     writer_.flush();
   }
@@ -227,15 +229,19 @@ void writeThings(rdf::WriteTransaction& transaction, const std::string& time, co
 void copyHistory(const rdf::QuadReader& from, rdf::WriteTransaction& into) {
   const auto graph = from.idOf(Term::iri(kGraphHistory));
   if (!graph) return;
-  const auto begins = from.idOf(Term::iri(provenance("generatedAtTime")));
+  const auto begins = from.idOf(Term::iri(provenance("generatedAtTime"))),
+             ends = from.idOf(Term::iri(provenance("invalidatedAtTime")));
   const rdf::QuadReader there(static_cast<const rdf::ReadTransaction&>(into));
   const ThingLookup things(there);
   rdf::QuadWriter writer(into);
   rdf::QuadCursor cursor = from.scan({.s = {}, .p = {}, .o = {}, .g = *graph});
   for (rdf::QuadIds quad; cursor.next(quad);) {
     const Quad copied{from.termOf(quad.s), from.termOf(quad.p), from.termOf(quad.o), Term::iri(kGraphHistory)};
-    if (quad.p == begins && hashIn(copied.subject.text, "thing")) {  // of both maps it begins with the earlier one
-      const auto known = things.since(copied.subject.text);
+    if ((quad.p == begins || quad.p == ends) && hashIn(copied.subject.text, "thing")) {
+      // Of both maps it begins and ends with the earlier one. What has an object in one of them does not end.
+      std::optional<std::string> known = quad.p == begins ? things.since(copied.subject.text) : std::nullopt;
+      if (quad.p == ends)
+        for (const Term& time : things.endsOf(copied.subject.text)) known = time.text;
       if (known && *known <= copied.object.text) continue;
       if (known)
         writer.remove(rdf::QuadIds{writer.intern(copied.subject), writer.intern(copied.predicate),

@@ -122,11 +122,25 @@ void addLineage(rdf::WriteTransaction& transaction, const std::string& activity_
     for (const DerivedObject& object : *objects) {
       removeEnd(object.id);
       for (const ContentHash& from : object.from)
-        add(object.id, provenance("wasDerivedFrom"), Term::iri(rdf::iriOfObject(from)));
+        if (from != object.id)  // joined with objects of another map
+          add(object.id, provenance("wasDerivedFrom"), Term::iri(rdf::iriOfObject(from)));
       add(object.id, provenance("wasGeneratedBy"), activity);
     }
   for (const ContentHash& added : changes.added) removeEnd(added);
   for (const ContentHash& gone : changes.gone) add(gone, provenance("wasInvalidatedBy"), activity);
+  writer.flush();
+}
+
+void removeEndsOf(rdf::WriteTransaction& transaction, const std::vector<ContentHash>& present) {
+  const rdf::QuadReader before(static_cast<const rdf::ReadTransaction&>(transaction));
+  const std::set<ContentHash> there(present.begin(), present.end());
+  rdf::QuadWriter writer(transaction);
+  forEachHistoryLink(before, "wasInvalidatedBy", [&](const Term& object, const Term& activity) {
+    const auto id = hashIn(object.text, "object");
+    if (id && there.contains(*id))
+      writer.remove(rdf::QuadIds{writer.intern(object), writer.intern(Term::iri(provenance("wasInvalidatedBy"))),
+                                 writer.intern(activity), writer.intern(Term::iri(rdf::vocabulary::kGraphHistory))});
+  });
   writer.flush();
 }
 

@@ -40,5 +40,7 @@ std::set<std::string> activitiesIn(const rdf::QuadReader& quads);
 
 /// Adds that each object of `objects` was derived from others, by the activity.
 void addLineage(rdf::WriteTransaction& transaction, const std::string& activity_iri, const ObjectChanges& changes);
+/// Removes that these objects are gone, which the history of another map may say.
+void removeEndsOf(rdf::WriteTransaction& transaction, const std::vector<ContentHash>& present);
 
 }  // namespace cluxel::mapping

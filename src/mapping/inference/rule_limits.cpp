@@ -11,47 +11,80 @@
 
 namespace cluxel::mapping {
 
+namespace ast = sparql::ast;
+
 namespace {
 
-namespace ast = sparql::ast;
 using PathKind = ast::Path::Kind;
 using Variables = std::set<ast::VariableIndex>;
+
+/// Whether the path as a whole holds between a term and itself without a step.
+bool mayBeEmpty(const ast::Path& path) {
+  switch (path.kind) {
+    case PathKind::ZeroOrMore:
+    case PathKind::ZeroOrOne:
+      return true;
+    case PathKind::Alternative:
+      return std::any_of(path.parts.begin(), path.parts.end(), mayBeEmpty);
+    case PathKind::Link:
+    case PathKind::NegatedSet:
+      return false;
+    default:
+      return std::all_of(path.parts.begin(), path.parts.end(), mayBeEmpty);
+  }
+}
 
 bool walksAny(const ast::Path& path) {
   return path.kind == PathKind::NegatedSet || std::any_of(path.parts.begin(), path.parts.end(), walksAny);
 }
 
-/// Calls `visit` with the groups below an element, but for those of sub-selects and expressions.
-template <typename Element, typename Visit>
-void forEachGroup(Element& element, const Visit& visit) {
-  if (auto* inner = std::get_if<ast::GroupPattern>(&element.value)) visit(*inner);
-  if (auto* optional = std::get_if<ast::OptionalPattern>(&element.value)) visit(optional->group);
-  if (auto* minus = std::get_if<ast::MinusPattern>(&element.value)) visit(minus->group);
-  if (auto* graph = std::get_if<ast::GraphPattern>(&element.value)) visit(graph->group);
-  if (auto* service = std::get_if<ast::ServicePattern>(&element.value)) visit(service->group);
-  if (auto* either = std::get_if<ast::UnionPattern>(&element.value))
-    for (auto& branch : either->branches) visit(branch);
+/// The expressions of a select outside of its patterns.
+std::vector<const ast::Expression*> expressionsOf(const ast::Select& select) {
+  std::vector<const ast::Expression*> all;
+  for (const ast::Projection& column : select.projection)
+    if (column.expression) all.push_back(&*column.expression);
+  for (const ast::GroupCondition& group : select.modifiers.group_by) all.push_back(&group.expression);
+  for (const ast::Expression& having : select.modifiers.having) all.push_back(&having);
+  for (const ast::OrderCondition& order : select.modifiers.order_by) all.push_back(&order.expression);
+  return all;
+}
+
+bool patternsAskExists(const ast::GroupPattern& group) {
+  return std::any_of(group.elements.begin(), group.elements.end(), [](const ast::PatternElement& element) {
+    bool asks = false;
+    if (const auto* inner = std::get_if<ast::SubSelect>(&element.value)) asks = asksExists(*inner->select);
+    forEachGroup(element, [&](const ast::GroupPattern& inner) { asks = asks || patternsAskExists(inner); });
+    return asks;
+  });
 }
 
 class PathCheck {
  public:
   explicit PathCheck(const NamedText& rule) : rule_(rule) {}
 
+  void select(const ast::Select& select) const {
+    Variables bound;
+    if (select.values) bound.insert(select.values->variables.begin(), select.values->variables.end());
+    group(select.where, bound);
+    bound.merge(boundIn(select.where));
+    for (const ast::Expression* one : expressionsOf(select)) expression(*one, bound);
+  }
+
+ private:
   /// `bound`: variables that patterns around the group bind.
   void group(const ast::GroupPattern& group, Variables bound) const {
     bound.merge(boundIn(group));
     for (const ast::PatternElement& element : group.elements) {
       if (const auto* block = std::get_if<ast::TriplesBlock>(&element.value))
         for (const ast::TriplePattern& triple : block->triples)
-          if (triple.isPath() && mayHaveNoStep(*triple.path) && !isBound(triple.subject, bound)) refuse();
+          if (triple.isPath() && mayBeEmpty(*triple.path) && !isBound(triple.subject, bound)) refuse();
       if (const auto* filter = std::get_if<ast::Filter>(&element.value)) expression(filter->condition, bound);
       if (const auto* bind = std::get_if<ast::Bind>(&element.value)) expression(bind->expression, bound);
-      if (const auto* inner = std::get_if<ast::SubSelect>(&element.value)) this->group(inner->select->where, {});
+      if (const auto* inner = std::get_if<ast::SubSelect>(&element.value)) select(*inner->select);
       forEachGroup(element, [&](const ast::GroupPattern& inner) { this->group(inner, bound); });
     }
   }
 
- private:
   [[noreturn]] void refuse() const {
     throw InputError({.file = rule_.name},
                      "a path that may have no step (* or ?) stands between two variables that nothing else binds: it "
@@ -91,7 +124,7 @@ class PathCheck {
     Variables bound;
     if (const auto* block = std::get_if<ast::TriplesBlock>(&element.value))
       for (const ast::TriplePattern& triple : block->triples)
-        if (!triple.isPath() || !mayHaveNoStep(*triple.path)) addEnds(triple, bound);
+        if (!triple.isPath() || !mayBeEmpty(*triple.path)) addEnds(triple, bound);
     if (const auto* inner = std::get_if<ast::GroupPattern>(&element.value)) bound = boundIn(*inner);
     if (const auto* graph = std::get_if<ast::GraphPattern>(&element.value)) bound = boundIn(graph->group);
     if (const auto* bind = std::get_if<ast::Bind>(&element.value)) bound.insert(bind->variable);
@@ -123,6 +156,27 @@ ast::PatternElement noDerivation(const ast::PatternTerm& term, ast::SourceOffset
   return {ast::Filter{std::move(condition)}, at};
 }
 
+/// ?thing a ?class.
+bool isTypeOfAny(const ast::TriplePattern& triple) {
+  return !triple.isPath() && !triple.predicate.isVariable() &&
+         triple.predicate.term().text == rdf::vocabulary::rdf("type") && triple.object.isVariable();
+}
+
+/// FILTER(?class NOT IN (clx:Derivation, rdf:Statement)): the class of derivations and its superclass.
+ast::PatternElement isNoDerivation(const ast::PatternTerm& type, ast::SourceOffset at) {
+  ast::Expression condition;
+  condition.kind = ast::Expression::Kind::NotIn;
+  condition.height = 2;
+  condition.arguments.resize(3);
+  condition.arguments[0].kind = ast::Expression::Kind::Variable;
+  condition.arguments[0].variable = type.variable();
+  condition.arguments[1].term = Term::iri(rdf::vocabulary::clx("Derivation"));
+  condition.arguments[2].term = Term::iri(rdf::vocabulary::rdf("Statement"));
+  condition.at = at;
+  for (ast::Expression& argument : condition.arguments) argument.at = at;
+  return {ast::Filter{std::move(condition)}, at};
+}
+
 void hideIn(ast::GroupPattern& group);
 
 void hideIn(ast::Expression& expression) {
@@ -139,6 +193,7 @@ void hideIn(ast::GroupPattern& group) {
     if (const auto* block = std::get_if<ast::TriplesBlock>(&element.value))
       for (const ast::TriplePattern& triple : block->triples) {
         const bool is_any = triple.isPath() ? walksAny(*triple.path) : triple.predicate.isVariable();
+        if (isTypeOfAny(triple)) filters.push_back(isNoDerivation(triple.object, element.at));
         if (is_any && triple.subject.isVariable()) filters.push_back(noDerivation(triple.subject, element.at));
         if (is_any && triple.isPath() && triple.object.isVariable())
           filters.push_back(noDerivation(triple.object, element.at));
@@ -157,13 +212,24 @@ void hideIn(ast::GroupPattern& group) {
 
 }  // namespace
 
+bool hasExists(const ast::Expression& expression) {
+  return expression.pattern != nullptr ||
+         std::any_of(expression.arguments.begin(), expression.arguments.end(), hasExists);
+}
+
+bool asksExists(const ast::Select& select) {
+  const auto expressions = expressionsOf(select);
+  return std::any_of(expressions.begin(), expressions.end(), [](const auto* one) { return hasExists(*one); }) ||
+         patternsAskExists(select.where);
+}
+
 bool mayHaveNoStep(const ast::Path& path) {
   return path.kind == PathKind::ZeroOrMore || path.kind == PathKind::ZeroOrOne ||
          std::any_of(path.parts.begin(), path.parts.end(), mayHaveNoStep);
 }
 
 void refuseUnboundPaths(const ast::Query& query, const NamedText& rule) {
-  PathCheck(rule).group(query.select.where, {});
+  PathCheck(rule).select(query.select);
 }
 
 void hideDerivations(ast::Query& query) {

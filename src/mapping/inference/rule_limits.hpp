@@ -2,12 +2,33 @@
 // Keeps rules from finding what rules have made only because they may look at everything.
 #pragma once
 
+#include <variant>
+#include <vector>
+
 #include "mapping/map_inputs.hpp"
 #include "sparql/syntax/ast.hpp"
 
 namespace cluxel::mapping {
 
-/// Whether the path holds between a term and itself without a step.
+/// Calls `visit` with the groups below an element, but for those of sub-selects and expressions.
+template <typename Element, typename Visit>
+void forEachGroup(Element& element, const Visit& visit) {
+  if (auto* inner = std::get_if<sparql::ast::GroupPattern>(&element.value)) visit(*inner);
+  if (auto* optional = std::get_if<sparql::ast::OptionalPattern>(&element.value)) visit(optional->group);
+  if (auto* minus = std::get_if<sparql::ast::MinusPattern>(&element.value)) visit(minus->group);
+  if (auto* graph = std::get_if<sparql::ast::GraphPattern>(&element.value)) visit(graph->group);
+  if (auto* service = std::get_if<sparql::ast::ServicePattern>(&element.value)) visit(service->group);
+  if (auto* either = std::get_if<sparql::ast::UnionPattern>(&element.value))
+    for (auto& branch : either->branches) visit(branch);
+}
+
+bool hasExists(const sparql::ast::Expression& expression);
+
+/// Whether a select or one below it has EXISTS outside of its patterns: in HAVING, GROUP BY, ORDER BY or what it
+/// selects.
+bool asksExists(const sparql::ast::Select& select);
+
+/// Whether the path, or some part of it, holds between a term and itself without a step.
 bool mayHaveNoStep(const sparql::ast::Path& path);
 
 /// Throws InputError for such a path between two variables that nothing else binds: it holds for every term of the map,

@@ -16,11 +16,6 @@ namespace {
 using PathKind = ast::Path::Kind;
 using Need = ReadPattern::Need;
 
-bool hasExists(const ast::Expression& expression) {
-  return expression.pattern != nullptr ||
-         std::any_of(expression.arguments.begin(), expression.arguments.end(), hasExists);
-}
-
 /// Replaces sequences and inverses by patterns with hidden variables between them.
 class PathExpansion {
  public:
@@ -162,9 +157,9 @@ class ShapeWalk {
 
   void run() {
     PathExpansion(shape_.query.variables).group(shape_.query.select.where);
-    refuseUnboundPaths(shape_.query, shape_.rule);
     hideDerivations(shape_.query);
     if (!shape_.query.dataset.empty()) return never("it names its graphs");
+    if (asksExists(shape_.query.select)) return never("it asks EXISTS where it groups, selects or orders");
     const ast::GroupPattern* body = bodyOf();
     group(body != nullptr ? *body : shape_.query.select.where, body != nullptr ? Need::Always : Need::No);
     if (body != nullptr) mentionKey(*body);
@@ -206,8 +201,9 @@ class ShapeWalk {
   bool isGroupedByKey(const ast::GroupPattern& around, const ast::Select& inner) {
     for (const ast::PatternElement& element : around.elements) {
       const auto* filter = std::get_if<ast::Filter>(&element.value);
+      const auto* bind = std::get_if<ast::Bind>(&element.value);
       const bool is_computed =
-          std::holds_alternative<ast::Bind>(element.value) || (filter != nullptr && !hasExists(filter->condition));
+          (bind != nullptr && !hasExists(bind->expression)) || (filter != nullptr && !hasExists(filter->condition));
       if (is_computed || (subSelectIn(element) != nullptr && subSelectIn(element)->select.get() == &inner)) continue;
       asWhole("it joins a sub-select with other patterns");
       return false;
@@ -282,7 +278,13 @@ class ShapeWalk {
   }
 
   void group(const ast::GroupPattern& pattern, Need need) {
-    for (const ast::PatternElement& element : pattern.elements) this->element(element, need);
+    bool has_bind = false;
+    for (const ast::PatternElement& element : pattern.elements) {
+      // A row does not name what BIND saw before the triples behind it.
+      if (has_bind && std::holds_alternative<ast::TriplesBlock>(element.value)) shape_.is_plain = false;
+      has_bind = has_bind || std::holds_alternative<ast::Bind>(element.value);
+      this->element(element, need);
+    }
   }
 
   void element(const ast::PatternElement& element, Need need) {

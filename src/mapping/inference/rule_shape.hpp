@@ -51,7 +51,7 @@ struct RuleShape {
   std::vector<std::size_t> branches;  ///< how many each UNION has, of those in UnionBranch
 };
 
-/// Throws InputError when the rule cannot be parsed, and as refuseUnboundPaths() does.
+/// Throws InputError when the rule cannot be parsed.
 RuleShape shapeOf(const NamedText& rule);
 
 }  // namespace cluxel::mapping

@@ -6,6 +6,7 @@
 
 #include "cluxel/error.hpp"
 #include "mapping/inference/read_test.hpp"
+#include "mapping/inference/rule_limits.hpp"
 #include "rdf/ontology/ontology.hpp"
 #include "rdf/ontology/schema.hpp"
 #include "rdf/store/quad_store.hpp"
@@ -154,8 +155,12 @@ void checkSparqlRules(const std::vector<NamedText>& rules) {
   for (const NamedText& rule : rules) {
     requireConstruct(sparql::PreparedQuery(reader, rule.text, ruleOptions(rule)), rule);
     refuseBlankNodes(rule);
-    shapeOf(rule);
   }
+}
+
+void checkNewSparqlRules(const std::vector<NamedText>& rules) {
+  checkSparqlRules(rules);
+  for (const NamedText& rule : rules) refuseUnboundPaths(shapeOf(rule).query, rule);
 }
 
 InferenceRecord runSparqlRules(rdf::WriteTransaction& transaction, const std::vector<NamedText>& rules,

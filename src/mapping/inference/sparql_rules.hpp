@@ -13,6 +13,9 @@ namespace cluxel::mapping {
 
 /// Throws InputError when a text is not a CONSTRUCT query or its result may differ between runs.
 void checkSparqlRules(const std::vector<NamedText>& rules);
+/// The same for rules that no map has yet, and for paths as refuseUnboundPaths() does. A map of an earlier program may
+/// have such a rule, and can still be changed.
+void checkNewSparqlRules(const std::vector<NamedText>& rules);
 
 /// Evaluates the rules in order. Each rule is a stratum: it sees the facts of earlier rules and its own, and is
 /// repeated until it derives nothing new. Expects the closure to be complete and keeps it so. Each derived fact names

@@ -141,6 +141,8 @@ Statement completedStatement(Statement statement, const Written& written, const 
     statement.value = *written.value;
   }
   const bool has_class = written.anchor_class.has_value();
+  if (has_class && written.anchor_class->kind != TermKind::Iri)
+    refuseStatement(iri, "has a clx:anchorClass that is no IRI");
   if (has_class) statement.class_iri = written.anchor_class->text;
   if (has_class && (statement.kind != StatementKind::Fact || !statement.points.empty()))
     refuseStatement(iri, "is anchored to a class, which only properties can be, and those to no points");

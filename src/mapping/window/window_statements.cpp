@@ -110,7 +110,8 @@ WindowStatements::WindowStatements(const rdf::ReadTransaction& transaction, cons
       continue;
     }
     const auto known = former.find(id);
-    bool is_changed = known == former.end() || statements_before.isOther(statement);
+    // An earlier program let a statement that is anchored to points apply to the ground.
+    bool is_changed = known == former.end() || statements_before.isOther(statement) || saysOfWideObject(id);
     const bool is_region = statement.kind == StatementKind::IgnoreRegion;
     places_[id] = is_changed || is_region ? tilesOf(statement, owners, clouds, map) : known->second;
     is_changed = is_changed || (before.size() > 1 && places_[id] != known->second);  // a region in another map
