@@ -251,6 +251,9 @@ void MapEditor::commit(rdf::WriteTransaction& transaction, const std::string& op
   last_activity_ = addActivity(transaction, activity, scans, parsed_.inputs);
   if (!defers_things_) {
     addLineage(transaction, last_activity_, compareStates(layers.before, layers.after));
+    std::vector<ContentHash> made;
+    for (const ObjectMembers& object : layers.after) made.push_back(object.id);
+    removeEndsOf(transaction, made);
     writeThings(transaction, dateTimeText(activity.ended_s), layers.before, layers.after, ObjectsOf::OneMap,
                 keptBy(transaction, layers));
   }

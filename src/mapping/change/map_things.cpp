@@ -83,16 +83,16 @@ class Naming {
     const Heirs heirs = heirsOf(before, after, objects_of);
     std::vector<std::optional<Thing>> names(after.size());
     const std::vector<char> is_back = areBack(before, after);
+    const auto inherit = [&](std::size_t a) { names[a] = held(inherited(before, heirs.before_of[a])); };
     for (std::size_t a = 0; a < after.size(); ++a)
-      if (is_back[a] == 0) names[a] = held(inherited(before, heirs.before_of[a]));
+      if (is_back[a] == 0) inherit(a);
     // Of several that had the same name, the one to which it would come anyway is first.
     for (std::size_t a = 0; a < after.size(); ++a)
-      if (is_back[a] != 0 && hadName(after[a].id, inherited(before, heirs.before_of[a])))
-        names[a] = held(inherited(before, heirs.before_of[a]));
+      if (is_back[a] != 0 && hadName(after[a].id, inherited(before, heirs.before_of[a]))) inherit(a);
     for (std::size_t a = 0; a < after.size(); ++a)
       if (is_back[a] != 0 && !names[a]) names[a] = returned(after[a].id);
     for (std::size_t a = 0; a < after.size(); ++a)
-      if (is_back[a] != 0 && !names[a]) names[a] = held(inherited(before, heirs.before_of[a]));
+      if (is_back[a] != 0 && !names[a]) inherit(a);
     for (std::size_t a = 0; a < after.size(); ++a) {
       if (names[a]) continue;
       names[a] = named(after[a].id);
@@ -121,7 +121,7 @@ class Naming {
     if (thing != from) add(thing, provenance("wasDerivedFrom"), Term::iri(from));
   }
 
-  /// Which objects after are such that there were before the last change: they have things, and were not there now.
+  /// Which objects come back: they have a thing from earlier, and were not there before this change.
   std::vector<char> areBack(const std::vector<ObjectMembers>& before, const std::vector<ObjectMembers>& after) {
     std::set<ContentHash> there;
     for (const ObjectMembers& object : before) there.insert(object.id);

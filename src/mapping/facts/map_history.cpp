@@ -105,42 +105,34 @@ std::vector<RetractedScan> retractedScans(const rdf::ReadTransaction& transactio
 }
 
 void addLineage(rdf::WriteTransaction& transaction, const std::string& activity_iri, const ObjectChanges& changes) {
-  const rdf::QuadReader before(static_cast<const rdf::ReadTransaction&>(transaction));
   rdf::QuadWriter writer(transaction);
   const Term graph = Term::iri(rdf::vocabulary::kGraphHistory), activity = Term::iri(activity_iri);
-  /// An object that has come back is not gone.
-  const auto removeEnd = [&](const ContentHash& object) {
-    for (const Quad& quad : quadsAbout(before, rdf::iriOfObject(object), rdf::vocabulary::kGraphHistory))
-      if (quad.predicate.text == provenance("wasInvalidatedBy"))
-        writer.remove(rdf::QuadIds{writer.intern(quad.subject), writer.intern(quad.predicate),
-                                   writer.intern(quad.object), writer.intern(quad.graph)});
-  };
   const auto add = [&](const ContentHash& subject, const std::string& property, const Term& object) {
     writer.add(Quad{Term::iri(rdf::iriOfObject(subject)), Term::iri(property), object, graph});
   };
   for (const auto* objects : {&changes.changed, &changes.split, &changes.joined})
     for (const DerivedObject& object : *objects) {
-      removeEnd(object.id);
       for (const ContentHash& from : object.from)
         if (from != object.id)  // joined with objects of another map
           add(object.id, provenance("wasDerivedFrom"), Term::iri(rdf::iriOfObject(from)));
       add(object.id, provenance("wasGeneratedBy"), activity);
     }
-  for (const ContentHash& added : changes.added) removeEnd(added);
   for (const ContentHash& gone : changes.gone) add(gone, provenance("wasInvalidatedBy"), activity);
   writer.flush();
 }
 
 void removeEndsOf(rdf::WriteTransaction& transaction, const std::vector<ContentHash>& present) {
   const rdf::QuadReader before(static_cast<const rdf::ReadTransaction&>(transaction));
-  const std::set<ContentHash> there(present.begin(), present.end());
+  const auto ended = before.idOf(Term::iri(provenance("wasInvalidatedBy")));
+  const auto history = before.idOf(Term::iri(rdf::vocabulary::kGraphHistory));
+  if (!ended || !history) return;
   rdf::QuadWriter writer(transaction);
-  forEachHistoryLink(before, "wasInvalidatedBy", [&](const Term& object, const Term& activity) {
-    const auto id = hashIn(object.text, "object");
-    if (id && there.contains(*id))
-      writer.remove(rdf::QuadIds{writer.intern(object), writer.intern(Term::iri(provenance("wasInvalidatedBy"))),
-                                 writer.intern(activity), writer.intern(Term::iri(rdf::vocabulary::kGraphHistory))});
-  });
+  for (const ContentHash& id : present) {
+    const auto object = before.idOf(Term::iri(rdf::iriOfObject(id)));
+    if (!object) continue;
+    rdf::QuadCursor cursor = before.scan({.s = *object, .p = *ended, .o = {}, .g = *history});
+    for (rdf::QuadIds quad; cursor.next(quad);) writer.remove(quad);
+  }
   writer.flush();
 }
 

@@ -40,7 +40,7 @@ std::set<std::string> activitiesIn(const rdf::QuadReader& quads);
 
 /// Adds that each object of `objects` was derived from others, by the activity.
 void addLineage(rdf::WriteTransaction& transaction, const std::string& activity_iri, const ObjectChanges& changes);
-/// Removes that these objects are gone, which the history of another map may say.
+/// Removes that these objects are gone: they have come back, or the history of another map says it.
 void removeEndsOf(rdf::WriteTransaction& transaction, const std::vector<ContentHash>& present);
 
 }  // namespace cluxel::mapping

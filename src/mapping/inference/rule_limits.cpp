@@ -223,11 +223,6 @@ bool asksExists(const ast::Select& select) {
          patternsAskExists(select.where);
 }
 
-bool mayHaveNoStep(const ast::Path& path) {
-  return path.kind == PathKind::ZeroOrMore || path.kind == PathKind::ZeroOrOne ||
-         std::any_of(path.parts.begin(), path.parts.end(), mayHaveNoStep);
-}
-
 void refuseUnboundPaths(const ast::Query& query, const NamedText& rule) {
   PathCheck(rule).select(query.select);
 }

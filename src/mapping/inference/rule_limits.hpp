@@ -28,11 +28,8 @@ bool hasExists(const sparql::ast::Expression& expression);
 /// selects.
 bool asksExists(const sparql::ast::Select& select);
 
-/// Whether the path, or some part of it, holds between a term and itself without a step.
-bool mayHaveNoStep(const sparql::ast::Path& path);
-
-/// Throws InputError for such a path between two variables that nothing else binds: it holds for every term of the map,
-/// also for those by which derivations are described. `query`: with sequences of paths taken apart.
+/// Throws InputError for a path that may have no step between two variables that nothing else binds: it holds for every
+/// term of the map, also for those by which derivations are described. `query`: with sequences of paths taken apart.
 void refuseUnboundPaths(const sparql::ast::Query& query, const NamedText& rule);
 
 /// Leaves out descriptions of derivations (clx:Derivation) where a pattern may hold for any fact: where its property is

@@ -23,11 +23,7 @@ class PathExpansion {
   void group(ast::GroupPattern& group) {
     for (ast::PatternElement& element : group.elements) {
       if (auto* block = std::get_if<ast::TriplesBlock>(&element.value)) triples(*block);
-      if (auto* inner = std::get_if<ast::GroupPattern>(&element.value)) this->group(*inner);
-      if (auto* optional = std::get_if<ast::OptionalPattern>(&element.value)) this->group(optional->group);
-      if (auto* minus = std::get_if<ast::MinusPattern>(&element.value)) this->group(minus->group);
-      if (auto* either = std::get_if<ast::UnionPattern>(&element.value))
-        for (ast::GroupPattern& branch : either->branches) this->group(branch);
+      forEachGroup(element, [this](ast::GroupPattern& inner) { this->group(inner); });
       if (auto* filter = std::get_if<ast::Filter>(&element.value)) expression(filter->condition);
       if (auto* inner = std::get_if<ast::SubSelect>(&element.value)) {
         auto select = std::make_shared<ast::Select>(*inner->select);
@@ -82,6 +78,12 @@ class PathExpansion {
 
   ast::VariableTable& variables_;
 };
+
+/// Whether the path, or some part of it, may have no step.
+bool mayHaveNoStep(const ast::Path& path) {
+  return path.kind == PathKind::ZeroOrMore || path.kind == PathKind::ZeroOrOne ||
+         std::any_of(path.parts.begin(), path.parts.end(), mayHaveNoStep);
+}
 
 /// The properties that a path walks; false when they cannot be told.
 bool addLinks(const ast::Path& path, std::vector<Term>& links) {
