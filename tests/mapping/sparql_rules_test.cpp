@@ -216,6 +216,20 @@ TEST_F(SparqlRules, SeeNothingOfTheHistoryOfBuilds) {
   EXPECT_TRUE(ask("GRAPH " + history + " { ?t clx:sourceFile ?f }")) << "others may ask it";
 }
 
+TEST_F(SparqlRules, DoNotSeeDerivationsWhereTheyAskOutsideOfTheirPatterns) {
+  addTree(1);
+  runSparqlRules(
+      transaction,
+      {{"named.rq", kQueryPrefixes + "CONSTRUCT { ?t clx:isNamed ?e } WHERE { { SELECT ?t "
+                                     "(EXISTS { ?d ?p ?t } AS ?e) { ?t a clx:Tree } } }"},
+       {"lone.rq", kQueryPrefixes + "CONSTRUCT { ?t clx:isLone false } WHERE { { SELECT ?t { ?t a clx:Tree } "
+                                    "GROUP BY ?t HAVING(EXISTS { ?d ?p ?t }) } }"}});
+  EXPECT_TRUE(ask("?t clx:isNamed false"));
+  EXPECT_TRUE(ask("?d rdf:subject ?t . ?t a clx:Tree"));
+  EXPECT_FALSE(ask("?t clx:isNamed true")) << "by a derivation of the rule itself";
+  EXPECT_FALSE(ask("?t clx:isLone false"));
+}
+
 TEST(SparqlRulesCheck, RefusesPathsWithoutAStepBetweenUnboundVariables) {
   const auto check = [](const std::string& where) {
     checkNewSparqlRules(
@@ -225,12 +239,18 @@ TEST(SparqlRulesCheck, RefusesPathsWithoutAStepBetweenUnboundVariables) {
   for (const char* where :
        {"?a clx:on* ?b", "?a clx:on? ?b", "?a clx:on* ?b . ?b clx:on* ?c", "{ ?a clx:on* ?b } MINUS { ?a a clx:Tree }",
         "?a a clx:Tree . { SELECT ?b (COUNT(?c) AS ?n) { ?b clx:on* ?c } GROUP BY ?b }",
-        "?b a clx:Tree FILTER EXISTS { ?a clx:on* ?c }", "{ ?a clx:on* ?b } UNION { ?a a clx:Tree . ?a clx:on* ?b }"})
+        "?b a clx:Tree FILTER EXISTS { ?a clx:on* ?c }", "{ ?a clx:on* ?b } UNION { ?a a clx:Tree . ?a clx:on* ?b }",
+        "VALUES ?a { UNDEF clx:x } ?a clx:on* ?b", "VALUES (?a ?c) { (UNDEF 1) } ?a clx:on* ?b",
+        "BIND(1 / 0 AS ?a) ?a clx:on* ?b", "BIND(?c AS ?a) ?a clx:on* ?b",
+        "{ SELECT ?a { OPTIONAL { ?a a clx:Tree } } } ?a clx:on* ?b",
+        "{ SELECT (1 / 0 AS ?a) { ?c a clx:Tree } } ?a clx:on* ?b"})
     EXPECT_THROW(check(where), InputError) << where;
   for (const char* where :
        {"?a clx:on+ ?b", "?a a clx:Tree . ?a clx:on* ?b", "?b a clx:Tree . ?a clx:on* ?b", "?a clx:on*/clx:near ?b",
         "?a a clx:Tree . ?a clx:on* ?b . ?b clx:on? ?c", "?a a clx:Tree OPTIONAL { ?a clx:on* ?b }",
         "{ ?a a clx:Tree } UNION { ?a a clx:Bush } ?a clx:on* ?b", "VALUES ?a { clx:x } ?a clx:on* ?b",
+        "VALUES (?a ?c) { (clx:x UNDEF) } ?a clx:on* ?b", "BIND(clx:x AS ?a) ?a clx:on* ?b",
+        "?c a clx:Tree BIND(?c AS ?a) ?a clx:on* ?b", "{ SELECT ?a { ?a a clx:Tree } } ?a clx:on* ?b",
         "?a clx:near ?b FILTER NOT EXISTS { ?a clx:on* ?c }", "?a (clx:on?/clx:near)+ ?b",
         "?a (clx:near|(clx:on?/clx:hasPart)) ?b"})
     EXPECT_NO_THROW(check(where)) << where;

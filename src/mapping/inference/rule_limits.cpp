@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <memory>
-#include <set>
 
 #include "cluxel/error.hpp"
+#include "mapping/inference/bound_variables.hpp"
 #include "rdf/vocabulary.hpp"
 
 namespace cluxel::mapping {
@@ -15,38 +15,18 @@ namespace ast = sparql::ast;
 
 namespace {
 
-using PathKind = ast::Path::Kind;
-using Variables = std::set<ast::VariableIndex>;
-
-/// Whether the path as a whole holds between a term and itself without a step.
-bool mayBeEmpty(const ast::Path& path) {
-  switch (path.kind) {
-    case PathKind::ZeroOrMore:
-    case PathKind::ZeroOrOne:
-      return true;
-    case PathKind::Alternative:
-      return std::any_of(path.parts.begin(), path.parts.end(), mayBeEmpty);
-    case PathKind::Link:
-    case PathKind::NegatedSet:
-      return false;
-    default:
-      return std::all_of(path.parts.begin(), path.parts.end(), mayBeEmpty);
-  }
-}
-
 bool walksAny(const ast::Path& path) {
-  return path.kind == PathKind::NegatedSet || std::any_of(path.parts.begin(), path.parts.end(), walksAny);
+  return path.kind == ast::Path::Kind::NegatedSet || std::any_of(path.parts.begin(), path.parts.end(), walksAny);
 }
 
-/// The expressions of a select outside of its patterns.
-std::vector<const ast::Expression*> expressionsOf(const ast::Select& select) {
-  std::vector<const ast::Expression*> all;
-  for (const ast::Projection& column : select.projection)
-    if (column.expression) all.push_back(&*column.expression);
-  for (const ast::GroupCondition& group : select.modifiers.group_by) all.push_back(&group.expression);
-  for (const ast::Expression& having : select.modifiers.having) all.push_back(&having);
-  for (const ast::OrderCondition& order : select.modifiers.order_by) all.push_back(&order.expression);
-  return all;
+/// Calls `visit` with the expressions of a select outside of its patterns.
+template <typename Select, typename Visit>
+void forEachExpression(Select& select, const Visit& visit) {
+  for (auto& column : select.projection)
+    if (column.expression) visit(*column.expression);
+  for (auto& group : select.modifiers.group_by) visit(group.expression);
+  for (auto& having : select.modifiers.having) visit(having);
+  for (auto& order : select.modifiers.order_by) visit(order.expression);
 }
 
 bool patternsAskExists(const ast::GroupPattern& group) {
@@ -63,11 +43,10 @@ class PathCheck {
   explicit PathCheck(const NamedText& rule) : rule_(rule) {}
 
   void select(const ast::Select& select) const {
-    Variables bound;
-    if (select.values) bound.insert(select.values->variables.begin(), select.values->variables.end());
+    Variables bound = select.values ? boundIn(ast::PatternElement{*select.values}) : Variables{};
     group(select.where, bound);
     bound.merge(boundIn(select.where));
-    for (const ast::Expression* one : expressionsOf(select)) expression(*one, bound);
+    forEachExpression(select, [&](const ast::Expression& one) { expression(one, bound); });
   }
 
  private:
@@ -95,49 +74,6 @@ class PathCheck {
   void expression(const ast::Expression& expression, const Variables& bound) const {
     for (const ast::Expression& argument : expression.arguments) this->expression(argument, bound);
     if (expression.pattern) group(*expression.pattern, bound);
-  }
-
-  static bool isBound(const ast::PatternTerm& term, const Variables& bound) {
-    return !term.isVariable() || bound.contains(term.variable());
-  }
-
-  /// What each solution of the group binds, paths that may have no step from one bound end to the other.
-  static Variables boundIn(const ast::GroupPattern& group) {
-    Variables bound;
-    for (const ast::PatternElement& element : group.elements) bound.merge(boundIn(element));
-    for (std::size_t before = bound.size() + 1; before != bound.size();) {
-      before = bound.size();
-      for (const ast::PatternElement& element : group.elements)
-        if (const auto* block = std::get_if<ast::TriplesBlock>(&element.value))
-          for (const ast::TriplePattern& triple : block->triples)
-            if (isBound(triple.subject, bound) || isBound(triple.object, bound)) addEnds(triple, bound);
-    }
-    return bound;
-  }
-
-  static void addEnds(const ast::TriplePattern& triple, Variables& bound) {
-    for (const ast::PatternTerm* end : {&triple.subject, &triple.object})
-      if (end->isVariable()) bound.insert(end->variable());
-  }
-
-  static Variables boundIn(const ast::PatternElement& element) {
-    Variables bound;
-    if (const auto* block = std::get_if<ast::TriplesBlock>(&element.value))
-      for (const ast::TriplePattern& triple : block->triples)
-        if (!triple.isPath() || !mayBeEmpty(*triple.path)) addEnds(triple, bound);
-    if (const auto* inner = std::get_if<ast::GroupPattern>(&element.value)) bound = boundIn(*inner);
-    if (const auto* graph = std::get_if<ast::GraphPattern>(&element.value)) bound = boundIn(graph->group);
-    if (const auto* bind = std::get_if<ast::Bind>(&element.value)) bound.insert(bind->variable);
-    if (const auto* data = std::get_if<ast::InlineData>(&element.value))
-      bound.insert(data->variables.begin(), data->variables.end());
-    if (const auto* inner = std::get_if<ast::SubSelect>(&element.value))
-      for (const ast::Projection& column : inner->select->projection) bound.insert(column.variable);
-    if (const auto* either = std::get_if<ast::UnionPattern>(&element.value)) {
-      bound = boundIn(either->branches.front());
-      for (const ast::GroupPattern& branch : either->branches)
-        std::erase_if(bound, [in_branch = boundIn(branch)](auto variable) { return !in_branch.contains(variable); });
-    }
-    return bound;
   }
 
   const NamedText& rule_;
@@ -177,6 +113,7 @@ ast::PatternElement isNoDerivation(const ast::PatternTerm& type, ast::SourceOffs
   return {ast::Filter{std::move(condition)}, at};
 }
 
+void hideIn(ast::Select& select);
 void hideIn(ast::GroupPattern& group);
 
 void hideIn(ast::Expression& expression) {
@@ -202,12 +139,17 @@ void hideIn(ast::GroupPattern& group) {
     if (auto* bind = std::get_if<ast::Bind>(&element.value)) hideIn(bind->expression);
     if (auto* inner = std::get_if<ast::SubSelect>(&element.value)) {
       auto select = std::make_shared<ast::Select>(*inner->select);
-      hideIn(select->where);
+      hideIn(*select);
       inner->select = std::move(select);
     }
     forEachGroup(element, [](ast::GroupPattern& inner) { hideIn(inner); });
   }
   for (ast::PatternElement& filter : filters) group.elements.push_back(std::move(filter));
+}
+
+void hideIn(ast::Select& select) {
+  hideIn(select.where);
+  forEachExpression(select, [](ast::Expression& one) { hideIn(one); });
 }
 
 }  // namespace
@@ -218,9 +160,9 @@ bool hasExists(const ast::Expression& expression) {
 }
 
 bool asksExists(const ast::Select& select) {
-  const auto expressions = expressionsOf(select);
-  return std::any_of(expressions.begin(), expressions.end(), [](const auto* one) { return hasExists(*one); }) ||
-         patternsAskExists(select.where);
+  bool asks = patternsAskExists(select.where);
+  forEachExpression(select, [&](const ast::Expression& one) { asks = asks || hasExists(one); });
+  return asks;
 }
 
 void refuseUnboundPaths(const ast::Query& query, const NamedText& rule) {
@@ -228,7 +170,7 @@ void refuseUnboundPaths(const ast::Query& query, const NamedText& rule) {
 }
 
 void hideDerivations(ast::Query& query) {
-  hideIn(query.select.where);
+  hideIn(query.select);
 }
 
 }  // namespace cluxel::mapping

@@ -6,6 +6,7 @@
 #include <memory>
 #include <utility>
 
+#include "mapping/inference/bound_variables.hpp"
 #include "mapping/inference/rule_limits.hpp"
 #include "sparql/syntax/parser.hpp"
 
@@ -100,57 +101,45 @@ class KeyBinding {
  public:
   explicit KeyBinding(ast::VariableIndex key) : key_(key) {}
 
-  /// Returns whether each solution of the group binds the key. `is_bound`: what is around it does already.
-  bool group(const ast::GroupPattern& pattern, bool is_bound = false) {
-    std::vector<const ast::Expression*> filters;  // they apply to the whole group
-    for (const ast::PatternElement& element : pattern.elements) {
-      if (const auto* filter = std::get_if<ast::Filter>(&element.value)) filters.push_back(&filter->condition);
-      is_bound = this->element(element, is_bound) || is_bound;
+  /// `is_bound`: what is around the group binds the key.
+  bool isLocal(const ast::GroupPattern& group, bool is_bound = false) const {
+    const bool is_bound_by_all = is_bound || boundIn(group).contains(key_);
+    bool is_local = true;
+    for (const ast::PatternElement& element : group.elements) {
+      const auto* filter = std::get_if<ast::Filter>(&element.value);
+      is_local =
+          is_local && (filter != nullptr ? isLocal(filter->condition, is_bound_by_all) : isLocal(element, is_bound));
+      is_bound = is_bound || boundIn(element).contains(key_);
     }
-    for (const ast::Expression* filter : filters) exists(*filter, is_bound);
-    return is_bound;
+    return is_local;
   }
-  bool isLocal() const { return is_local_; }
 
  private:
-  bool isKey(const ast::PatternTerm& term) const { return term.isVariable() && term.variable() == key_; }
-
   bool mentions(const ast::Expression& expression) const {
     return (expression.kind == ast::Expression::Kind::Variable && expression.variable == key_) ||
            std::any_of(expression.arguments.begin(), expression.arguments.end(),
                        [this](const ast::Expression& argument) { return mentions(argument); });
   }
 
-  /// Whether each solution of the element binds the key.
-  bool element(const ast::PatternElement& element, bool is_bound) {
-    if (const auto* block = std::get_if<ast::TriplesBlock>(&element.value))
-      return std::any_of(block->triples.begin(), block->triples.end(),
-                         [this](const auto& triple) { return isKey(triple.subject) || isKey(triple.object); });
-    if (const auto* inner = std::get_if<ast::GroupPattern>(&element.value)) return group(*inner);
-    if (const auto* either = std::get_if<ast::UnionPattern>(&element.value)) {
-      bool is_in_all = true;
-      for (const ast::GroupPattern& branch : either->branches) is_in_all = group(branch) && is_in_all;
-      return is_in_all;
-    }
+  /// `is_bound`: what stands before the element binds the key.
+  bool isLocal(const ast::PatternElement& element, bool is_bound) const {
     if (const auto* bind = std::get_if<ast::Bind>(&element.value))
-      is_local_ = is_local_ && (is_bound || !(bind->variable == key_ || mentions(bind->expression)));
-    const auto* optional = std::get_if<ast::OptionalPattern>(&element.value);
-    const auto* minus = std::get_if<ast::MinusPattern>(&element.value);
-    if (optional == nullptr && minus == nullptr) return false;
-    is_local_ = is_local_ && is_bound;
-    group(optional != nullptr ? optional->group : minus->group);
-    return false;
+      return is_bound || !(bind->variable == key_ || mentions(bind->expression));
+    const bool asks_row = std::holds_alternative<ast::OptionalPattern>(element.value) ||
+                          std::holds_alternative<ast::MinusPattern>(element.value);
+    bool is_local = is_bound || !asks_row;
+    forEachGroup(element, [&](const ast::GroupPattern& inner) { is_local = is_local && isLocal(inner); });
+    return is_local;
   }
 
-  void exists(const ast::Expression& expression, bool is_bound) {
-    for (const ast::Expression& argument : expression.arguments) exists(argument, is_bound);
-    if (!expression.pattern) return;
-    is_local_ = is_local_ && is_bound;
-    group(*expression.pattern, is_bound);
+  /// EXISTS sees what its group binds.
+  bool isLocal(const ast::Expression& expression, bool is_bound) const {
+    return (!expression.pattern || (is_bound && isLocal(*expression.pattern, is_bound))) &&
+           std::all_of(expression.arguments.begin(), expression.arguments.end(),
+                       [&](const ast::Expression& argument) { return isLocal(argument, is_bound); });
   }
 
   ast::VariableIndex key_;
-  bool is_local_ = true;
 };
 
 class ShapeWalk {
@@ -247,9 +236,7 @@ class ShapeWalk {
       if (!read.has_key && (read.need == Need::No || !has_variable))
         asWhole("what it excludes or may lack is not about ?" + shape_.query.variables[shape_.key].name);
     }
-    KeyBinding binding(shape_.key);
-    binding.group(body);
-    if (!binding.isLocal())
+    if (!KeyBinding(shape_.key).isLocal(body))
       asWhole("it has OPTIONAL, MINUS, BIND or EXISTS where ?" + shape_.query.variables[shape_.key].name +
               " is not bound yet");
     shape_.is_plain = shape_.is_plain && !shape_.is_grouped;
