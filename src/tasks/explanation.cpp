@@ -11,6 +11,7 @@
 #include "base/nearest_name.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/facts/ask_replay.hpp"
+#include "mapping/facts/semantic_layer.hpp"
 #include "mapping/map_part.hpp"
 #include "mapping/statements/applied_statements.hpp"
 #include "rdf/vocabulary.hpp"
@@ -18,19 +19,12 @@
 #include "rules/explain/part_run.hpp"
 #include "rules/explain/path_tree.hpp"
 #include "rules/explain/why_not.hpp"
-#include "rules/language/rule_loader.hpp"
 #include "tasks/stated_of_things.hpp"
 #include "tasks/thing_names.hpp"
 
 namespace cluxel::tasks {
 
 namespace {
-
-rules::RuleSet rulesOf(const mapping::MapInputs& inputs) {
-  std::vector<rules::RuleSource> sources;
-  for (const mapping::NamedText& text : inputs.rules) sources.push_back({text.name, text.text});
-  return loadRuleTexts(sources, inputs.rule_roots, classCatalogueOf(inputs.ontology)).require();
-}
 
 /// Names rule files relative to the folder of the first: the map holds the paths of the machine that built it.
 void shortenFiles(rules::Decision& decision, const mapping::MapInputs& inputs) {
@@ -244,14 +238,14 @@ std::string classNamed(const rules::ClassCatalogue& classes, const std::string& 
 
 ExplanationTexts explainWhyNot(const mapping::MapReader& map, const std::string& name, const std::string& class_name) {
   const mapping::MapInputs inputs = map.inputs();
-  const rules::RuleSet rules = rulesOf(inputs);
+  const rules::RuleSet rules = mapping::parseInputs(inputs).rules;
   const WhyNotOfThing thing = whyNotOf(map, rules, inputs, name, class_name);
   return {thing.headline + "\n" + textOf(thing.why, rules), jsonOf(thing.why, rules)};
 }
 
 std::string explanationGraph(const mapping::MapReader& map, const std::string& name, const std::string& class_name) {
   const mapping::MapInputs inputs = map.inputs();
-  const rules::RuleSet rules = rulesOf(inputs);
+  const rules::RuleSet rules = mapping::parseInputs(inputs).rules;
   const auto graphOf = [&](const rules::Decision& decision) { return dotOf(*rules.find(decision.rule_id), decision); };
   if (!class_name.empty()) {
     const WhyNotOfThing thing = whyNotOf(map, rules, inputs, name, class_name);
@@ -273,7 +267,7 @@ std::string explanationGraph(const mapping::MapReader& map, const std::string& n
 ExplanationTexts explainThing(const mapping::MapReader& map, const std::string& written) {
   const NamedThing named = thingNamed(map, written);
   const mapping::MapInputs inputs = map.inputs();
-  const rules::RuleSet rules = rulesOf(inputs);
+  const rules::RuleSet rules = mapping::parseInputs(inputs).rules;
   Explained explained = explanationOf(map, named, rules);
   shortenFiles(explained.explanation, inputs);
   const perception::Scene& scene = explained.sceneOf(map);
@@ -295,7 +289,7 @@ std::string explainThing(const mapping::MapReader& map, const std::string& name,
 
 std::vector<std::string> explainObjects(const mapping::MapReader& map) {
   const mapping::MapInputs inputs = map.inputs();
-  const rules::RuleSet rules = rulesOf(inputs);
+  const rules::RuleSet rules = mapping::parseInputs(inputs).rules;
   mapping::AskReplay oracle(map);
   const rules::ReasoningContext context{.oracle = &oracle};
   const rules::ReasoningResult result = reason(map.scene(), rules, context);
