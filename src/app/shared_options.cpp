@@ -8,6 +8,7 @@
 #include <map>
 #include <string>
 
+#include "base/file_bytes.hpp"
 #include "cluxel/error.hpp"
 #include "rdf/file/map_check.hpp"
 
@@ -72,6 +73,11 @@ void refuseToReplaceMap(const fs::path& output) {
   if (fs::is_regular_file(output, ignored) && rdf::looksLikeMap(output))
     throw Error(ErrorKind::StoreUnavailable,
                 output.string() + ": is a map, which the output would replace; name another file");
+}
+
+void writeOutput(const fs::path& output, std::string_view bytes) {
+  refuseToReplaceMap(output);
+  writeFile(output, bytes);
 }
 
 }  // namespace cluxel::app

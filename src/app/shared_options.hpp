@@ -41,5 +41,7 @@ void addHtmlFile(CLI::App& command, fs::path& file);
 
 /// Throws Error (StoreUnavailable) when `output` is a map.
 void refuseToReplaceMap(const fs::path& output);
+/// Writes a file that a command makes, unless that would replace a map. Errors as for these two functions.
+void writeOutput(const fs::path& output, std::string_view bytes);
 
 }  // namespace cluxel::app

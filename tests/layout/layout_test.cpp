@@ -133,6 +133,13 @@ TEST(Layout, NamesOfOptionsLiveInTheProgramOnly) {
           << file << " names an option; give the error a Remedy: " << line;
 }
 
+TEST(Layout, WhatCommandsWriteReplacesNoMap) {
+  for (const fs::path& file : sourcesBelow({"src/app"}))
+    for (const std::string& line : linesOf(file))
+      EXPECT_TRUE(file.filename() == "shared_options.cpp" || line.find("writeFile(") == std::string::npos)
+          << file << " writes a file without writeOutput(): " << line;
+}
+
 TEST(Layout, PublicHeadersNameTheStandardLibraryAndEigenOnly) {
   for (const fs::path& file : sourcesBelow({"include/cluxel"}))
     for (const std::string& name : includesOf(file)) {

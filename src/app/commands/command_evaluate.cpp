@@ -5,7 +5,6 @@
 #include "app/command.hpp"
 #include "app/map_condition.hpp"
 #include "app/shared_options.hpp"
-#include "base/file_bytes.hpp"
 #include "cluxel/error.hpp"
 #include "tasks/evaluation/evaluation.hpp"
 #include "tasks/plots/evaluation_plots.hpp"
@@ -78,7 +77,7 @@ void writeEvaluationFigures(const tasks::MapEvaluation& evaluation, const Evalua
   std::vector<std::string> names;
   for (const fs::path& map : options.maps) names.push_back(map.filename().string());
   refuseToReplaceMap(options.html);
-  writeFile(options.html, tasks::plotPage(tasks::evaluationPlots(evaluation, names)));
+  writeOutput(options.html, tasks::plotPage(tasks::evaluationPlots(evaluation, names)));
 }
 
 }  // namespace

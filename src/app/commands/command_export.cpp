@@ -3,7 +3,6 @@
 #include "app/command.hpp"
 #include "app/map_condition.hpp"
 #include "app/shared_options.hpp"
-#include "base/file_bytes.hpp"
 #include "cluxel/error.hpp"
 #include "tasks/export/map_export.hpp"
 
@@ -64,7 +63,7 @@ void addExport(CLI::App& app, Session& session) {
       session.console.note(options->map.string() +
                            ": its blank nodes are too much alike for canonical labels and keep those of the store, so "
                            "that an equal map may have other bytes");
-    if (!to_stdout) writeFile(options->output, bytes);
+    if (!to_stdout) writeOutput(options->output, bytes);
     return ExitCode::Done;
   });
 }

@@ -5,7 +5,6 @@
 #include "app/command.hpp"
 #include "app/map_condition.hpp"
 #include "app/shared_options.hpp"
-#include "base/file_bytes.hpp"
 #include "base/utc_time.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/map_reader.hpp"
@@ -196,7 +195,7 @@ Json runsJson(const std::vector<tasks::MapRun>& runs) {
 
 void writeMapFigures(const InfoOptions& options, const fs::path& map, const tasks::MapFigures& figures) {
   refuseToReplaceMap(options.html);
-  writeFile(options.html, tasks::plotPage(tasks::mapPlots(figures, map.stem().string())));
+  writeOutput(options.html, tasks::plotPage(tasks::mapPlots(figures, map.stem().string())));
 }
 
 ExitCode infoOfStore(const fs::path& file, const rdf::QuadReader& quads, const Session& session) {

@@ -3,7 +3,7 @@
 #include <numbers>
 
 #include "app/command.hpp"
-#include "base/file_bytes.hpp"
+#include "app/shared_options.hpp"
 #include "cluxel/error.hpp"
 #include "scan/formats/manifest_writer.hpp"
 #include "scan/registration/pose_registration.hpp"
@@ -39,6 +39,7 @@ void refuseWrongOutput(const RegisterOptions& options) {
   if (is_there && !options.force)
     throw Error(ErrorKind::StoreUnavailable,
                 options.output.string() + " exists already: name another file, or give --force to replace it");
+  refuseToReplaceMap(options.output);
 }
 
 Json pairJson(const scan::RegisteredPair& pair, const scan::PoseRegistration& report, const scan::ScanSet& set) {
@@ -122,7 +123,7 @@ ExitCode registerScans(const RegisterOptions& options, Session& session) {
   const scan::ScanSet set = scan::ScanSet::open(options.inputs, {options.poses}, session.console);
   if (options.check) return checkPoses(options, set, session);
   const scan::PoseRegistration report = registerPoses(set, options.params, session.threadCount(), session.console);
-  writeFile(options.output, manifestText(set, report.poses(), options.output, "poses refined by cluxel register"));
+  writeOutput(options.output, manifestText(set, report.poses(), options.output, "poses refined by cluxel register"));
   if (session.json)
     printJson(reportJson(report, set));
   else

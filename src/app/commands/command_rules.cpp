@@ -7,6 +7,7 @@
 
 #include "app/command.hpp"
 #include "app/commands/change_report.hpp"
+#include "app/shared_options.hpp"
 #include "base/file_bytes.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/change/map_change.hpp"
@@ -200,6 +201,7 @@ ExitCode updateGoldenFiles(const RulesOptions& options, Session& session) {
 
 ExitCode runTests(const RulesOptions& options, Session& session) {
   refuseToReplaceTests(options.junit);
+  refuseToReplaceMap(options.junit);
   const DataHome home = session.dataHome();
   const rules::ClassCatalogue catalogue = catalogueFor(options, home);
   const rules::RuleTestOptions test_options = testOptions(options, session);
@@ -219,7 +221,7 @@ ExitCode runTests(const RulesOptions& options, Session& session) {
     run += report.results.size();
   }
   if (session.json) printJson(files.size() == 1 ? json.front() : json);
-  if (!options.junit.empty()) writeFile(options.junit, junit + "</testsuites>\n");
+  if (!options.junit.empty()) writeOutput(options.junit, junit + "</testsuites>\n");
   if (run == 0)
     throw Error(ErrorKind::InvalidArgument, options.only.empty() ? "the test files contain no test"
                                                                  : "no test's name contains '" + options.only + "'");

@@ -2,7 +2,6 @@
 // `cluxel rules doc`: the reference of attributes, relations, measures and rules.
 #include "app/command.hpp"
 #include "app/shared_options.hpp"
-#include "base/file_bytes.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/facts/map_oracle.hpp"
 #include "mapping/map_inputs.hpp"
@@ -32,7 +31,7 @@ ExitCode writeReference(const ReferenceOptions& options, const Session& session)
   if (options.out.empty())
     print(text);
   else
-    writeFile(options.out, text);
+    writeOutput(options.out, text);
   return ExitCode::Done;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "app/command.hpp"
+#include "app/shared_options.hpp"
 #include "base/file_bytes.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/facts/map_oracle.hpp"
@@ -129,7 +130,7 @@ ExitCode fit(const FitOptions& options, Session& session) {
   for (const tasks::FittedNumber& change : changes)
     if (change.at.file != main.name)
       session.console.note(toString(change.at) + ": stands in an included file, which is not written");
-  writeFile(options.out, withNumbers(main.text, main.name, changes));
+  writeOutput(options.out, withNumbers(main.text, main.name, changes));
   return ExitCode::Done;
 }
 

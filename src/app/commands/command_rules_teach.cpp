@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // `cluxel rules teach`: writes an exception for one object of a map, and a rule test of it.
 #include "app/command.hpp"
+#include "app/shared_options.hpp"
 #include "base/file_bytes.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/map_reader.hpp"
@@ -56,9 +57,9 @@ ExitCode teach(TeachOptions& options, Session& session) {
   options.lesson.rule_file = options.out.filename().string();
   const tasks::Lesson lesson = tasks::teach(map, options.lesson);
   for (const auto& [file, text] : includedFiles(map, options.out.parent_path()))
-    if (!fs::exists(file)) writeFile(file, text);
-  writeFile(options.out, lesson.rules);
-  writeFile(testFileOf(options.out), lesson.test);
+    if (!fs::exists(file)) writeOutput(file, text);
+  writeOutput(options.out, lesson.rules);
+  writeOutput(testFileOf(options.out), lesson.test);
   print(session.json ? jsonOf(lesson) : textOf(lesson));
   const rules::RuleTestReport report = runRuleTests(testFileOf(options.out), classCatalogueOf(map.inputs().ontology));
   if (!report.passed()) session.console.note("the test of the case fails, because its neighbours are not in it");

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // `cluxel rules try` and `cluxel rules diff`: what would change in a map under other rules. The map is not changed.
 #include "app/command.hpp"
-#include "base/file_bytes.hpp"
+#include "app/shared_options.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/facts/map_oracle.hpp"
 #include "rdf/file/map_check.hpp"
@@ -28,7 +28,7 @@ ExitCode report(const TrialOptions& options, const mapping::MapReader& map, cons
   if (!options.ply.empty()) {
     std::string bytes;
     writeDifferencePly(map, difference, [&](std::string_view piece) { bytes.append(piece); });
-    writeFile(options.ply, bytes);
+    writeOutput(options.ply, bytes);
   }
   return difference.isEmpty() ? ExitCode::Done : ExitCode::NegativeFinding;
 }

@@ -5,7 +5,6 @@
 #include "app/commands/change_report.hpp"
 #include "app/commands/statement_list.hpp"
 #include "app/shared_options.hpp"
-#include "base/file_bytes.hpp"
 #include "base/utf8.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/build/operator_statements.hpp"
@@ -171,7 +170,7 @@ ExitCode exportStatements(const StateOptions& options, const mapping::MapReader&
   std::string text;
   for (const std::string& line : lines) text += line;
   refuseToReplaceMap(options.export_file);
-  writeFile(options.export_file, text);
+  writeOutput(options.export_file, text);
   return ExitCode::Done;
 }
 

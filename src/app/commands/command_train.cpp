@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // `cluxel train`: trains a label model on labelled scans.
 #include "app/command.hpp"
-#include "base/file_bytes.hpp"
+#include "app/shared_options.hpp"
 #include "cluxel/error.hpp"
 #include "perception/training/training_files.hpp"
 #include "tasks/evaluation/model_card.hpp"
@@ -57,7 +57,7 @@ ExitCode trainModel(const TrainOptions& options, Session& session) {
       {{"command", commandText(options)}, {"data", options.data}, {"program", "cluxel " CLUXEL_VERSION}});
   fs::create_directories(options.output);
   saveModel(report.model, options.output / "model.json");
-  writeFile(options.output / "README.md", tasks::modelCard(report, {name, commandText(options), options.data}));
+  writeOutput(options.output / "README.md", tasks::modelCard(report, {name, commandText(options), options.data}));
   if (session.json)
     printJson(Json{{"model", (options.output / "model.json").string()},
                    {"accuracy", report.left_out.accuracy()},

@@ -6,7 +6,6 @@
 #include "app/command.hpp"
 #include "app/map_condition.hpp"
 #include "app/shared_options.hpp"
-#include "base/file_bytes.hpp"
 #include "tasks/view/view_page.hpp"
 
 namespace cluxel::app {
@@ -58,7 +57,7 @@ ExitCode view(const ViewArguments& arguments, Session& session) {
   std::string bytes;
   const tasks::ViewReport report = writeViewPage(map, page, tasks::shippedQuestions(home), options,
                                                  [&bytes](std::string_view piece) { bytes.append(piece); });
-  writeFile(arguments.output, bytes);
+  writeOutput(arguments.output, bytes);
   if (session.json)
     printJson(reportJson(report));
   else

@@ -6,7 +6,7 @@
 
 #include "app/command.hpp"
 #include "app/map_condition.hpp"
-#include "base/file_bytes.hpp"
+#include "app/shared_options.hpp"
 #include "cluxel/error.hpp"
 #include "rdf/file/map_check.hpp"
 #include "tasks/search/place_learning.hpp"
@@ -84,11 +84,14 @@ ExitCode reach(const WayArguments& arguments, Session& session) {
 ExitCode costMap(WayArguments arguments, Session& session) {
   if (arguments.output.extension() != ".pgm")
     throw Error(ErrorKind::InvalidArgument, "costmap: the output is an image; write -o NAME.pgm");
+  const fs::path yaml = fs::path(arguments.output).replace_extension(".yaml");
+  refuseToReplaceMap(arguments.output);
+  refuseToReplaceMap(yaml);
   const mapping::MapReader map = openMap(arguments, session);
   arguments.request.params.width_m = 0;  // the navigation software of the robot adds its width
   const tasks::CostMap cost_map = costMapOf(passableIn(map, arguments.request), arguments.output.filename().string());
-  writeFile(arguments.output, cost_map.image);
-  writeFile(fs::path(arguments.output).replace_extension(".yaml"), cost_map.yaml);
+  writeOutput(yaml, cost_map.yaml);
+  writeOutput(arguments.output, cost_map.image);
   return ExitCode::Done;
 }
 
@@ -137,6 +140,7 @@ void addWalkOptions(CLI::App& command, WayArguments& arguments) {
 }
 
 ExitCode learnPlaces(const std::vector<fs::path>& maps, const fs::path& output, Session& session) {
+  refuseToReplaceMap(output);
   tasks::PlaceLearner learner;
   for (std::size_t i = 0; i < maps.size(); ++i) {
     session.console.progress("counting", i, maps.size());
@@ -144,7 +148,7 @@ ExitCode learnPlaces(const std::vector<fs::path>& maps, const fs::path& output, 
   }
   session.console.progress("counting", maps.size(), maps.size());
   const std::vector<tasks::LearnedPlace> places = learner.learn();
-  writeFile(output, placesTurtle(places, learner.maps()));
+  writeOutput(output, placesTurtle(places, learner.maps()));
   std::set<std::string> classes;
   for (const tasks::LearnedPlace& place : places) classes.insert(place.class_iri);
   if (session.json)
