@@ -7,6 +7,7 @@
 
 #include <random>
 #include <set>
+#include <thread>
 
 #include "base/file_bytes.hpp"
 #include "cluxel/error.hpp"
@@ -149,6 +150,43 @@ TEST(RdfReader, RefusesLanguageTagsThatRaptorWouldReadBeyond) {
   };
   EXPECT_EQ(faultsOf(rdfxml(std::string(300, 'a'))).size(), 1U);
   EXPECT_EQ(parse(rdfxml("de")).front().object, Term::langLiteral("x", "de"));
+}
+
+TEST(RdfReader, RefusesStatementsWithoutTheirFullStop) {
+  const auto of = [](std::string text, RdfFormat format) {
+    return RdfSource{std::move(text), "lines", format, "", Term::iri("")};
+  };
+  const std::string whole = "<e:a> <e:b> \"x . # \\\" y\"^^<e:#d> .\n";
+  for (const char* cut : {"<e:a> <e:b> \"x\"", "<e:a> <e:b> <e:c.>", "<e:a> <e:b> \"x\"@en # .", "<e:a> <e:b> _:c"})
+    for (const RdfFormat format : {RdfFormat::NTriples, RdfFormat::NQuads}) {
+      const auto faults = faultsOf(of(whole + cut, format));
+      ASSERT_EQ(faults.size(), 1U) << cut;
+      EXPECT_EQ(faults[0].location.line, 2U);
+      EXPECT_THAT(faults[0].message, HasSubstr("full stop"));
+      EXPECT_FALSE(faultsOf(of(cut + ("\n" + whole), format)).empty()) << "in the middle: " << cut;
+    }
+  for (const char* sound : {"<e:a> <e:b> \"x\" . # c", "  # only a comment", "", "\t<e:a> <e:b> _:c.\r\n\r\n"})
+    EXPECT_TRUE(faultsOf(of(whole + sound, RdfFormat::NTriples)).empty()) << sound;
+}
+
+TEST(RdfReader, ReadsOnManyThreadsAtOnce) {
+  const RdfSource xml{
+      "<rdf:RDF xmlns:rdf='http://www.w3.org/1999/02/22-rdf-syntax-ns#'><rdf:Description rdf:about='e:a'>"
+      "<p xmlns='e:'>x</p></rdf:Description></rdf:RDF>",
+      "a.rdf", RdfFormat::RdfXml, "e:", Term::iri("")};
+  RdfSource faulty_xml = xml;
+  faulty_xml.text = "<rdf:RDF><not-closed></rdf:RDF>";
+  std::vector<std::thread> threads;
+  for (int number = 0; number < 8; ++number)
+    threads.emplace_back([&] {
+      for (int i = 0; i < 300; ++i) {
+        EXPECT_EQ(parse(turtle("<a> <b> [ <c> 1 ] .")).size(), 2U);
+        EXPECT_EQ(parse(xml).size(), 1U);
+        EXPECT_FALSE(faultsOf(faulty_xml).empty());
+        EXPECT_FALSE(faultsOf(turtle("<a> <b>")).empty());
+      }
+    });
+  for (std::thread& thread : threads) thread.join();
 }
 
 TEST(RdfReader, PassesOnTheCallersException) {

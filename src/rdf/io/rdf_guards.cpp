@@ -61,6 +61,34 @@ void refuseEscapes(const RdfSource& source, const RdfPiece& piece) {
   }
 }
 
+/// The last character of a line of N-Triples or N-Quads that is no blank, before a comment; 0 for a line without any.
+char lastOfStatement(std::string_view line) {
+  char last = 0;
+  for (std::size_t at = 0; at < line.size() && line[at] != '#'; ++at) {
+    const char c = line[at];
+    if (c == ' ' || c == '\t') continue;
+    last = c;
+    if (c == '<') at = line.find('>', at);
+    if (c == '"')
+      for (++at; at < line.size() && line[at] != '"'; ++at)
+        if (line[at] == '\\') ++at;
+    if (at >= line.size()) return last;  // not closed
+  }
+  return last;
+}
+
+/// Raptor takes a statement without its full stop, so that of a file that was cut it reads another last statement.
+void refuseLinesWithoutEnd(const RdfSource& source, const RdfPiece& piece) {
+  const std::string_view text = piece.text;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find_first_of("\n\r", begin), text.size());
+    const char last = lastOfStatement(text.substr(begin, end - begin));
+    if (last != 0 && last != '.')
+      refuse(source, piece, begin, "the statement does not end in a full stop", "the file may have been cut");
+    begin = end + 1;
+  }
+}
+
 /// In RDF/XML the tag is an attribute; entities and declared default values could hide its length.
 void refuseLongXmlTags(const RdfSource& source, const RdfPiece& piece) {
   const std::string_view text = piece.text;
@@ -86,6 +114,7 @@ void refuseHostileText(const RdfSource& source, const RdfPiece& piece) {
     refuse(source, piece, zero, "holds a zero byte, which no RDF text has");
   refuseLongTags(source, piece);
   refuseEscapes(source, piece);
+  if (source.format == RdfFormat::NTriples || source.format == RdfFormat::NQuads) refuseLinesWithoutEnd(source, piece);
 }
 
 }  // namespace cluxel::rdf

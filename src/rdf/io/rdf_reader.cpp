@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <exception>
 #include <memory>
+#include <mutex>
 #include <unordered_map>
+#include <vector>
 
 #include "cluxel/error.hpp"
 #include "rdf/io/rdf_faults.hpp"
@@ -21,8 +23,44 @@ namespace {
 // No RDF syntax allows this in a label, so generated labels cannot collide with written ones.
 constexpr char kGeneratedPrefix[] = "~";
 
+/// Worlds that nobody uses. None is freed: that would clean up libxml2 while other threads use it. Nor are two opened
+/// at a time, which initialises it.
+class IdleWorlds {
+ public:
+  static IdleWorlds& ofProcess() {
+    static auto* worlds = new IdleWorlds;  // threads may still read when the program ends
+    return *worlds;
+  }
+
+  raptor_world* take() {
+    const std::lock_guard lock(mutex_);
+    if (!worlds_.empty()) {
+      raptor_world* world = worlds_.back();
+      worlds_.pop_back();
+      return world;
+    }
+    raptor_world* world = raptor_new_world();
+    if (world == nullptr) throw std::bad_alloc();
+    // libxml2 has one handler of errors for each thread: a world must not stay in that of the thread that opened it.
+    raptor_world_set_flag(world, RAPTOR_WORLD_FLAG_LIBXML_GENERIC_ERROR_SAVE, 0);
+    raptor_world_set_flag(world, RAPTOR_WORLD_FLAG_LIBXML_STRUCTURED_ERROR_SAVE, 0);
+    if (raptor_world_open(world) != 0) throw std::bad_alloc();
+    return world;
+  }
+
+  void giveBack(raptor_world* world) {
+    raptor_world_set_log_handler(world, nullptr, nullptr);
+    const std::lock_guard lock(mutex_);
+    worlds_.push_back(world);
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<raptor_world*> worlds_;
+};
+
 struct RaptorDeleter {
-  void operator()(raptor_world* world) const { raptor_free_world(world); }
+  void operator()(raptor_world* world) const { IdleWorlds::ofProcess().giveBack(world); }
   void operator()(raptor_parser* parser) const { raptor_free_parser(parser); }
   void operator()(raptor_uri* uri) const { raptor_free_uri(uri); }
 };
@@ -192,8 +230,7 @@ bool Reading::feed(const RdfPiece& piece) {
 }
 
 void Reading::run() {
-  world_.reset(raptor_new_world());
-  if (!world_ || raptor_world_open(world_.get()) != 0) throw std::bad_alloc();
+  world_.reset(IdleWorlds::ofProcess().take());
   raptor_world_set_log_handler(world_.get(), this, &Reading::onMessage);
   raptor_world_set_generate_bnodeid_parameters(world_.get(), const_cast<char*>(kGeneratedPrefix), 1);
   const std::string base = source_.base_iri.empty() ? std::string("invalid:/") : source_.base_iri;
