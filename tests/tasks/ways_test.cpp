@@ -83,7 +83,7 @@ std::vector<double> relaxed(const PassableGrid& grid, std::uint32_t start) {
                   by = grid.frame.rowOf(b);
         if (a == b || std::abs(ax - bx) > 1 || std::abs(ay - by) > 1) continue;
         if (!isOpen(ax, ay) || !isOpen(bx, by) || !isOpen(ax, by) || !isOpen(bx, ay)) continue;
-        if (std::abs(grid.height[a] - grid.height[b]) > grid.max_step_m) continue;
+        if (!grid.isStepOpen(a, b)) continue;
         const double edge = std::hypot(ax - bx, ay - by) *
                             (static_cast<double>(grid.factor[a]) + static_cast<double>(grid.factor[b])) / 2;
         if (cost[a] + edge < cost[b] - 1e-12) {
@@ -136,12 +136,12 @@ TEST(PassableGrid, ARampIsASlopeAndAKerbIsAStep) {
   for (std::uint32_t cell = 0; cell < ramp.frame.size(); ++cell)
     ramp.height[cell] = 0.05F * static_cast<float>(ramp.frame.columnOf(cell));
   const PassableGrid steep = passable(ramp);
-  EXPECT_NEAR(steep.slope[steep.frame.index(20, 1)], 0.2, 1e-3);
+  EXPECT_NEAR(steep.relief.slope[steep.frame.index(20, 1)], 0.2, 1e-3);
   EXPECT_EQ(steep.closure[steep.frame.index(20, 1)], Closure::TooSteep);
   for (std::uint32_t cell = 0; cell < ramp.frame.size(); ++cell)
     ramp.height[cell] = ramp.frame.columnOf(cell) < 20 ? 0.0F : 0.12F;
   const PassableGrid kerb = passable(ramp);
-  EXPECT_NEAR(kerb.slope[kerb.frame.index(20, 1)], 0, 1e-6);
+  EXPECT_NEAR(kerb.relief.slope[kerb.frame.index(20, 1)], 0, 1e-6);
   EXPECT_FALSE(kerb.isStepOpen(kerb.frame.index(19, 1), kerb.frame.index(20, 1)));
   const RouteAnswer answer = findRoutes(kerb, {1, 0.4}, {9, 0.4}, 1);
   EXPECT_TRUE(answer.routes.empty());

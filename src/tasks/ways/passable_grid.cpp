@@ -46,24 +46,6 @@ void lineDistances(const std::vector<double>& in, std::vector<double>& out, std:
   }
 }
 
-/// Rise over run over a metre along one direction, without what steps contribute.
-float gradient(const TerrainGrid& terrain, std::uint32_t cell, int dx, int dy, double max_step_m) {
-  const GridFrame& frame = terrain.frame;
-  const int half = std::max(1, static_cast<int>(std::round(0.5 / frame.cell_m)));
-  double rise = 0;
-  int steps = 0;
-  for (int i = -half; i < half; ++i) {
-    const int x0 = frame.columnOf(cell) + i * dx, y0 = frame.rowOf(cell) + i * dy;
-    if (!frame.holds(x0, y0) || !frame.holds(x0 + dx, y0 + dy)) continue;
-    const std::uint32_t a = frame.index(x0, y0), b = frame.index(x0 + dx, y0 + dy);
-    const double difference = static_cast<double>(terrain.height[b]) - static_cast<double>(terrain.height[a]);
-    if (terrain.seen[a] == 0 || terrain.seen[b] == 0 || std::abs(difference) > max_step_m) continue;
-    rise += difference;
-    ++steps;
-  }
-  return steps == 0 ? 0.0F : static_cast<float>(rise / (steps * frame.cell_m));
-}
-
 /// The first thing of a cell that is not left out; absent when the cell is free.
 std::optional<std::uint32_t> thingLeft(const TerrainGrid& terrain, std::uint32_t cell,
                                        const std::vector<bool>& is_left_out) {
@@ -80,8 +62,6 @@ void closeCells(const TerrainGrid& terrain, const WayParams& params, const std::
     const auto thing = thingLeft(terrain, cell, is_left_out);
     is_thing[cell] = thing.has_value() ? 1 : 0;
     if (thing) grid.blocker[cell] = *thing;
-    grid.slope[cell] =
-        std::hypot(gradient(terrain, cell, 1, 0, params.max_step_m), gradient(terrain, cell, 0, 1, params.max_step_m));
   }
   const NearestMarked nearest = nearestMarked(grid.frame, is_thing);
   for (std::uint32_t cell = 0; cell < size; ++cell) {
@@ -90,7 +70,7 @@ void closeCells(const TerrainGrid& terrain, const WayParams& params, const std::
       grid.closure[cell] = Closure::Obstacle;
     } else if (terrain.seen[cell] == 0 && !params.crosses_unobserved) {
       grid.closure[cell] = Closure::Unobserved;
-    } else if (grid.slope[cell] > params.max_slope) {
+    } else if (grid.relief.slope[cell] > params.max_slope) {
       grid.closure[cell] = Closure::TooSteep;
     } else if (grid.clearance_m[cell] < params.width_m / 2) {
       grid.closure[cell] = Closure::TooNarrow;
@@ -109,7 +89,7 @@ void priceCells(const TerrainGrid& terrain, const WayParams& params, const std::
       if (thing != kUnnamedThing && near[thing]) is_near[cell] = 1;
   const NearestMarked nearest = near.empty() ? NearestMarked{} : nearestMarked(grid.frame, is_near);
   for (std::uint32_t cell = 0; cell < grid.frame.size(); ++cell) {
-    double factor = 1 + slope_weight * grid.slope[cell];
+    double factor = 1 + slope_weight * grid.relief.slope[cell];
     factor += crowded_weight * std::max(0.0, 1 - static_cast<double>(grid.clearance_m[cell]) / roomy_m);
     if (terrain.seen[cell] == 0) factor *= params.unobserved_factor;
     const bool is_far = !near.empty() && nearest.distance[cell] * grid.frame.cell_m > params.near_m;
@@ -152,8 +132,16 @@ NearestMarked nearestMarked(const GridFrame& frame, const std::vector<std::uint8
   return nearest;
 }
 
-bool PassableGrid::isStepOpen(std::uint32_t a, std::uint32_t b) const {
-  return std::abs(height[a] - height[b]) <= max_step_m;
+double PassableGrid::stepBetween(std::uint32_t a, std::uint32_t b) const {
+  const int x = std::min(frame.columnOf(a), frame.columnOf(b)), y = std::min(frame.rowOf(a), frame.rowOf(b));
+  const bool is_beside = frame.columnOf(a) != frame.columnOf(b), is_above = frame.rowOf(a) != frame.rowOf(b);
+  const std::uint32_t corner = frame.index(x, y);
+  float step = 0;
+  if (is_beside) step = relief.step_east[corner];
+  if (is_above) step = std::max(step, relief.step_north[corner]);
+  if (is_beside && is_above)  // over either of the two cells beside
+    step = std::max({step, relief.step_east[frame.index(x, y + 1)], relief.step_north[frame.index(x + 1, y)]});
+  return static_cast<double>(step);
 }
 
 PassableGrid passableOf(const TerrainGrid& terrain, const WayParams& params, const std::vector<bool>& is_left_out,
@@ -165,8 +153,8 @@ PassableGrid passableOf(const TerrainGrid& terrain, const WayParams& params, con
   grid.blocker.assign(size, kUnnamedThing);
   grid.factor.assign(size, 1.0F);
   grid.clearance_m.assign(size, 0.0F);
-  grid.slope.assign(size, 0.0F);
   grid.height = terrain.height;
+  grid.relief = reliefOf(terrain);
   grid.max_step_m = params.max_step_m;
   closeCells(terrain, params, is_left_out, grid);
   priceCells(terrain, params, near, grid);

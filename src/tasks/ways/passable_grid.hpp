@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "tasks/ways/ground_relief.hpp"
 #include "tasks/ways/terrain_grid.hpp"
 
 namespace cluxel::tasks {
@@ -14,7 +15,7 @@ enum class Closure : std::uint8_t { Open, Unobserved, Obstacle, TooSteep, TooNar
 struct WayParams {
   double width_m = 0.6;             ///< free width that is needed
   double max_slope = 0.12;          ///< rise over run
-  double max_step_m = 0.06;         ///< height difference between neighbouring cells
+  double max_step_m = 0.06;         ///< height of a step, as GroundRelief has it
   bool crosses_unobserved = false;  ///< ground that was not observed is open, at unobserved_factor
   double unobserved_factor = 1.5;   ///< cost of a metre there
   double near_m = 8;                ///< how far `near` things may be without extra cost
@@ -27,11 +28,14 @@ struct PassableGrid {
   std::vector<std::uint32_t> blocker;  ///< of Obstacle and TooNarrow: the object, as in TerrainGrid
   std::vector<float> factor;           ///< cost of a metre, at least 1
   std::vector<float> clearance_m;      ///< from the cell's centre to the nearest thing's cell
-  std::vector<float> height, slope;
+  std::vector<float> height;           ///< of the ground [m, map]
+  GroundRelief relief;
   double max_step_m = 0;
 
-  /// The difference in height between neighbouring cells is small enough.
-  bool isStepOpen(std::uint32_t a, std::uint32_t b) const;
+  /// The height of the step between neighbouring cells [m]; of a diagonal the largest of the four steps around its
+  /// middle.
+  double stepBetween(std::uint32_t a, std::uint32_t b) const;
+  bool isStepOpen(std::uint32_t a, std::uint32_t b) const { return stepBetween(a, b) <= max_step_m; }
 };
 
 /// `is_left_out`: per object, true when it is to be left out. `near`: objects that the way should stay near; empty:

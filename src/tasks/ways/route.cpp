@@ -28,14 +28,14 @@ Route routeOf(const PassableGrid& grid, std::vector<std::uint32_t> cells) {
   Route route;
   route.narrowest_m = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    route.steepest = std::max(route.steepest, static_cast<double>(grid.slope[cells[i]]));
+    route.steepest = std::max(route.steepest, static_cast<double>(grid.relief.slope[cells[i]]));
     route.narrowest_m = std::min(route.narrowest_m, 2 * static_cast<double>(grid.clearance_m[cells[i]]));
     if (i == 0) continue;
     const double length_m = (grid.frame.centreOf(cells[i]) - grid.frame.centreOf(cells[i - 1])).norm();
     const double rise_m = static_cast<double>(grid.height[cells[i]]) - static_cast<double>(grid.height[cells[i - 1]]);
     route.length_m += length_m;
     route.climb_m += std::max(0.0, rise_m);
-    route.highest_step_m = std::max(route.highest_step_m, std::abs(rise_m));
+    route.highest_step_m = std::max(route.highest_step_m, grid.stepBetween(cells[i - 1], cells[i]));
     route.cost +=
         length_m * (static_cast<double>(grid.factor[cells[i]]) + static_cast<double>(grid.factor[cells[i - 1]])) / 2;
   }
@@ -77,14 +77,14 @@ std::optional<Barrier> barrierAt(const PassableGrid& grid, std::uint32_t before,
   if (closure == Closure::Open) {
     if (grid.isStepOpen(before, cell)) return std::nullopt;
     barrier.kind = Barrier::Kind::Step;
-    barrier.measured = std::abs(static_cast<double>(grid.height[cell]) - static_cast<double>(grid.height[before]));
+    barrier.measured = grid.stepBetween(before, cell);
     return barrier;
   }
   if (closure == Closure::Unobserved) barrier.kind = Barrier::Kind::Unobserved;
   if (closure == Closure::TooSteep) barrier.kind = Barrier::Kind::TooSteep;
   if (closure == Closure::TooNarrow) barrier.kind = Barrier::Kind::TooNarrow;
   if (closure == Closure::Obstacle || closure == Closure::TooNarrow) barrier.thing = grid.blocker[cell];
-  barrier.measured = closure == Closure::TooSteep    ? static_cast<double>(grid.slope[cell])
+  barrier.measured = closure == Closure::TooSteep    ? static_cast<double>(grid.relief.slope[cell])
                      : closure == Closure::TooNarrow ? 2 * static_cast<double>(grid.clearance_m[cell])
                                                      : 0.0;
   return barrier;

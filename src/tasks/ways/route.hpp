@@ -42,7 +42,7 @@ struct Route {
   double length_m = 0;
   double climb_m = 0;         ///< sum of all that goes up
   double steepest = 0;        ///< rise over run
-  double highest_step_m = 0;  ///< between neighbouring cells
+  double highest_step_m = 0;  ///< as PassableGrid::stepBetween()
   double narrowest_m = 0;     ///< free width at the narrowest place; infinite without things
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Points near the ground refine its height; points above it name things.
+// The ground stage's surface, refined by points near it; points above it name things.
 #include "tasks/ways/terrain_grid.hpp"
 
 #include <algorithm>
@@ -53,6 +53,19 @@ GridFrame frameOf(const mapping::TileStages& stages, double cell_m) {
   return boundedFrame(frame, columns, rows);
 }
 
+/// Whether ground was measured somewhere in a square of a tile. `local`: its corner relative to that of the tile [m].
+bool isMeasured(const perception::GroundTile& tile, const Eigen::Vector2d& local, double edge_m) {
+  constexpr double inside_m = 1e-6;
+  const auto stackAt = [](double at_m) {
+    return std::clamp(static_cast<int>(std::floor(at_m / kStackSize_m)), 0, kStacksPerTile - 1);
+  };
+  for (int y = stackAt(local.y() + inside_m); y <= stackAt(local.y() + edge_m - inside_m); ++y)
+    for (int x = stackAt(local.x() + inside_m); x <= stackAt(local.x() + edge_m - inside_m); ++x)
+      if (tile.source[static_cast<std::size_t>(y * kStacksPerTile + x)] == perception::GroundSource::Measured)
+        return true;
+  return false;
+}
+
 /// Heights of the ground surface, and where it was measured.
 void fillGround(const mapping::TileStages& stages, TerrainGrid& grid) {
   const GridFrame& frame = grid.frame;
@@ -70,10 +83,7 @@ void fillGround(const mapping::TileStages& stages, TerrainGrid& grid) {
       const std::uint32_t cell = frame.index(column, row);
       const Eigen::Vector2d local = frame.centreOf(cell) - corner.head<2>();
       grid.height[cell] = static_cast<float>(groundHeightAt(ring, local.x(), local.y()));
-      const int x = std::clamp(static_cast<int>(local.x() / kStackSize_m), 0, kStacksPerTile - 1);
-      const int y = std::clamp(static_cast<int>(local.y() / kStackSize_m), 0, kStacksPerTile - 1);
-      measured[cell] =
-          tile.source[static_cast<std::size_t>(y * kStacksPerTile + x)] == perception::GroundSource::Measured;
+      measured[cell] = isMeasured(tile, local.array() - frame.cell_m / 2, frame.cell_m) ? 1 : 0;
     }
   }
   for (std::uint32_t cell = 0; cell < frame.size(); ++cell)
@@ -99,10 +109,77 @@ struct CellThing {
   auto operator<=>(const CellThing&) const = default;
 };
 
-/// Sums of points at the height of the ground.
-struct LowPoints {
-  std::vector<float> sum;
-  std::vector<std::uint32_t> count;
+/// Points at the height of the ground.
+class LowPoints {
+ public:
+  explicit LowPoints(const TerrainGrid& grid) : frame_(grid.frame), surface_(grid.height) {}
+
+  void add(std::uint32_t cell, const Eigen::Vector3d& p_map) {
+    points_.push_back({cell, (p_map - Eigen::Vector3d(frame_.min_x, frame_.min_y, 0)).cast<float>()});
+  }
+
+  /// Gives each cell the median height of its points, so that a cell at a kerb has the height of the side of which it
+  /// holds more. Where a cell has few points, those within half a metre count, moved along the slope of the surface.
+  void refine(TerrainGrid& grid) {
+    std::stable_sort(points_.begin(), points_.end(), [](const auto& a, const auto& b) { return a.cell < b.cell; });
+    first_.assign(frame_.size() + 1, 0);
+    for (const LowPoint& point : points_) ++first_[point.cell + 1];
+    for (std::size_t cell = 0; cell < frame_.size(); ++cell) first_[cell + 1] += first_[cell];
+    const int reach = std::max(1, static_cast<int>(std::lround(0.5 / frame_.cell_m)));
+    std::vector<float> heights;
+    for (std::uint32_t cell = 0; cell < frame_.size(); ++cell) {
+      constexpr std::size_t enough = 3;
+      heights.clear();
+      for (int ring = 0; ring <= reach && heights.size() < enough && grid.seen[cell] != 0; ++ring)
+        heightsWithin(cell, ring, heights);
+      if (heights.size() < enough) continue;
+      const auto middle = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 2);
+      std::nth_element(heights.begin(), middle, heights.end());
+      grid.height[cell] = *middle;
+    }
+  }
+
+ private:
+  struct LowPoint {
+    std::uint32_t cell;
+    Eigen::Vector3f place;  ///< x and y from the corner of the frame [m], height in the map
+  };
+
+  /// Of the cells up to `ring` columns and rows away.
+  void heightsWithin(std::uint32_t cell, int ring, std::vector<float>& heights) const {
+    heights.clear();
+    const int x = frame_.columnOf(cell), y = frame_.rowOf(cell);
+    const int left = std::max(0, x - ring), right = std::min(frame_.columns - 1, x + ring);
+    const Eigen::Vector2f middle = (frame_.centreOf(cell) - Eigen::Vector2d(frame_.min_x, frame_.min_y)).cast<float>();
+    const Eigen::Vector2f slope(slopeOf(x, y, 1, 0), slopeOf(x, y, 0, 1));
+    for (int row = std::max(0, y - ring); row <= std::min(frame_.rows - 1, y + ring); ++row)
+      for (std::uint32_t i = first_[frame_.index(left, row)]; i < first_[frame_.index(right, row) + 1]; ++i)
+        heights.push_back(points_[i].place.z() - slope.dot(points_[i].place.head<2>() - middle));
+  }
+
+  /// Of the surface over two metres, as far as there is one.
+  float slopeOf(int x, int y, int dx, int dy) const {
+    const int reach = std::max(1, static_cast<int>(std::lround(1 / frame_.cell_m)));
+    const auto end = [&](int direction) {
+      int last = 0;
+      for (int i = 1; i <= reach; ++i) {
+        const int column = x + direction * i * dx, row = y + direction * i * dy;
+        if (!frame_.holds(column, row) || std::isnan(surface_[frame_.index(column, row)])) break;
+        last = direction * i;
+      }
+      return last;
+    };
+    const int from = end(-1), to = end(1);
+    if (from == to) return 0;
+    const float rise =
+        surface_[frame_.index(x + to * dx, y + to * dy)] - surface_[frame_.index(x + from * dx, y + from * dy)];
+    return rise / static_cast<float>((to - from) * frame_.cell_m);
+  }
+
+  const GridFrame& frame_;
+  std::vector<float> surface_;  ///< NaN outside of tiles
+  std::vector<LowPoint> points_;
+  std::vector<std::uint32_t> first_;  ///< of each cell's points
 };
 
 /// Visits the points of all tiles: low ones refine the ground, others become things.
@@ -115,19 +192,18 @@ std::vector<CellThing> thingsOf(const mapping::MapReader& map, const TerrainPara
   std::uint32_t first = 0;
   for (const auto& [key, tile] : stages.cluxels()) {
     const perception::TilePoints& points = stages.points().at(key);
+    const auto ring = ringIn(stages.ground(), key);
     const Eigen::Vector3d corner = cornerOf(key);
     for (std::size_t i = 0; i < points.size(); ++i) {
       const auto cell = grid.frame.cellAt({corner.x() + points.x[i], corner.y() + points.y[i]});
       if (!cell) continue;
-      const float above = points.z[i] - grid.height[*cell];
+      const auto above = static_cast<float>(points.z[i] - groundHeightAt(ring, points.x[i], points.y[i]));
       const std::uint32_t object = object_of[first + tile.point_cluxel[i]];
       const bool is_ground = object != mapping::kNoObject && is_surface[object];
-      if (std::abs(above) < params.lowest_m) {
-        low.sum[*cell] += above;
-        ++low.count[*cell];
-      } else if (!is_ground && above > 0 && above <= params.highest_m) {
+      if (std::abs(above) < params.lowest_m)
+        low.add(*cell, corner + Eigen::Vector3d(points.x[i], points.y[i], points.z[i] - corner.z()));
+      else if (!is_ground && above > 0 && above <= params.highest_m)
         found.push_back({*cell, object == mapping::kNoObject ? kUnnamedThing : object});
-      }
     }
     first += static_cast<std::uint32_t>(tile.size());
   }
@@ -146,14 +222,14 @@ TerrainGrid terrainOf(const mapping::MapReader& map, const TerrainParams& params
   TerrainGrid grid;
   grid.frame = params.area ? frameOfArea(*params.area, params.cell_m) : frameOf(map.stages(), params.cell_m);
   const std::size_t size = grid.frame.size();
-  grid.height.assign(size, 0.0F);
+  grid.height.assign(size, std::numeric_limits<float>::quiet_NaN());
   grid.seen.assign(size, 0);
   fillGround(map.stages(), grid);
-  LowPoints low{std::vector<float>(size, 0.0F), std::vector<std::uint32_t>(size, 0)};
+  LowPoints low(grid);
   std::vector<CellThing> found = thingsOf(map, params, grid, low);
-  constexpr std::uint32_t min_points = 3;
-  for (std::size_t cell = 0; cell < size; ++cell)
-    if (low.count[cell] >= min_points) grid.height[cell] += low.sum[cell] / static_cast<float>(low.count[cell]);
+  low.refine(grid);
+  for (float& height : grid.height)
+    if (std::isnan(height)) height = 0;
   std::sort(found.begin(), found.end());
   found.erase(std::unique(found.begin(), found.end()), found.end());
   grid.first_thing.assign(size + 1, 0);

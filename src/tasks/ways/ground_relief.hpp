@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// Slopes and steps of the ground. A step is a rise within half a metre that stands out from the ground on both sides of
+// it; all else that rises is a slope.
+#pragma once
+
+#include <vector>
+
+#include "tasks/ways/terrain_grid.hpp"
+
+namespace cluxel::tasks {
+
+/// Values for each cell.
+struct GroundRelief {
+  std::vector<float> slope;       ///< rise over run over a metre (two cells, when these are longer), without steps
+  std::vector<float> step_east;   ///< height of the step to the neighbour with the next x [m]; 0 without one
+  std::vector<float> step_north;  ///< the same to the neighbour with the next y
+};
+
+/// Neither slopes nor steps are told where the ground of a cell, or of its neighbour, was not observed. Cost: linear.
+GroundRelief reliefOf(const TerrainGrid& terrain);
+
+}  // namespace cluxel::tasks
