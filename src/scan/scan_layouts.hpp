@@ -18,6 +18,7 @@ namespace cluxel::scan {
 struct LayoutScan {
   ScanFile file;
   std::size_t frame = 0;
+  std::optional<Eigen::Vector3d> outer_origin = {};  ///< of the map frame, when the pose is in an outer frame
   bool needs_pose = false;  ///< one of several in their own sensor frames, which make no map without poses
 };
 

@@ -13,6 +13,8 @@
 
 namespace cluxel::scan {
 
+namespace fs = std::filesystem;
+
 namespace {
 
 /// The labels of the points: a label file has one entry for each record, also for those without a return.
@@ -33,15 +35,29 @@ std::vector<std::uint32_t> readLabels(const ScanFile& file, const ParsedScan& pa
   return labels;
 }
 
-/// The sensor's pose; for a file in the map frame the position of its local origin.
-Eigen::Isometry3d poseOf(const ScanFile& file, const ParsedScan& parsed) {
-  if (parsed.local_origin.isZero(0)) return file.T_map_sensor;
-  if (file.has_pose)
-    refuseFile(file.path.string(),
+/// Makes points relative to a local origin relative to the sensor.
+void moveToSensor(ScanPoints& points, const Eigen::Vector3d& local_origin, const fs::path& path) {
+  const Eigen::Vector3d first = local_origin + Eigen::Vector3f(points.x[0], points.y[0], points.z[0]).cast<double>();
+  if (first.cwiseAbs().maxCoeff() > kFloatReach_m)
+    refuseFile(path.string(),
                "the first point lies more than " + std::to_string(static_cast<int>(kFloatReach_m)) +
                    " m from the sensor, but the scan has a pose",
                "points of a scan with a pose are in the sensor frame; leave the pose out for points in the map frame");
-  return file.T_map_sensor * Eigen::Translation3d(toMetresZUp(parsed.local_origin, file.frame));
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    points.x[i] = static_cast<float>(points.x[i] + local_origin.x());
+    points.y[i] = static_cast<float>(points.y[i] + local_origin.y());
+    points.z[i] = static_cast<float>(points.z[i] + local_origin.z());
+  }
+  for (Eigen::Vector3f& origin : points.origin) origin = (origin.cast<double>() + local_origin).cast<float>();
+}
+
+/// The sensor's pose; for a file in the map frame the position of its local origin. `parsed`: in metres.
+Eigen::Isometry3d poseOf(const ScanFile& file, ParsedScan& parsed) {
+  if (parsed.local_origin.isZero(0)) return file.T_map_sensor;
+  const Eigen::Vector3d local_origin = toMetresZUp(parsed.local_origin, file.frame);
+  if (!file.has_pose) return file.T_map_sensor * Eigen::Translation3d(local_origin);
+  moveToSensor(parsed.points, local_origin, file.path);  // its unit is small
+  return file.T_map_sensor;
 }
 
 }  // namespace

@@ -44,7 +44,8 @@ class ScanGatherer {
       scans_.push_back(singleScan(input));
   }
 
-  /// Assigns the poses of the parameters, then those inside PCD files, and notes which scans have none.
+  /// Assigns the poses of the parameters, then those inside PCD files, brings them into the map frame, and notes which
+  /// scans have none.
   std::vector<ScanFile> finish() {
     if (!params_->poses.empty()) assignGivenPoses();
     std::vector<ScanFile> files;
@@ -59,6 +60,7 @@ class ScanGatherer {
         throw InputError({.file = scan.file.path.string()},
                          "has no pose: the KITTI scans (.bin) of a folder lie each in the frame of its sensor",
                          params_->remedies.poses + ", or put poses.txt beside the scans");
+      if (scan.outer_origin) scan.file.T_map_sensor.pretranslate(Eigen::Vector3d(-*scan.outer_origin));
       scan.file.T_map_sensor = toMetresZUp(scan.file.T_map_sensor, params_->frame);
       scan.file.frame = params_->frame;
       files.push_back(std::move(scan.file));
@@ -164,9 +166,8 @@ class ScanGatherer {
     const std::size_t first = scans_.size();
     for (const ManifestEntry& entry : manifest.scans) addEntry(entry);
     if (manifest.poses) assignPosesFrom(manifest.poses->path, first);
-    if (!manifest.poses_in_outer || !manifest.map_origin) return;
-    for (std::size_t i = first; i < scans_.size(); ++i)
-      scans_[i].file.T_map_sensor.pretranslate(Eigen::Vector3d(-*manifest.map_origin));
+    for (std::size_t i = first; manifest.poses_in_outer && i < scans_.size(); ++i)
+      scans_[i].outer_origin = manifest.map_origin;
   }
 
   /// With all faults of its text and of the paths in it.

@@ -97,6 +97,24 @@ TEST(LasFormat, RefusesATruncatedFileNamingTheByte) {
               HasSubstr("byte 100: error: the LAS header is cut off"));
 }
 
+TEST(LasFormat, RefusesMorePointsThanTheHeaderTells) {
+  for (const unsigned minor : {2U, 4U}) {
+    const std::string whole = lasFile(minor, 0, kPoints);
+    std::string fewer = whole;
+    put<std::uint32_t>(fewer, 107, 1);
+    if (minor == 4) put<std::uint64_t>(fewer, 247, 1);
+    EXPECT_THAT(refusalOf([&] { parseLas(fewer, "a.las"); }),
+                HasSubstr("behind the 1 points of the header lies room for 1 more"));
+    EXPECT_NO_THROW(parseLas(whole + "padding", "a.las"));
+  }
+  std::string records = lasFile(4, 0, kPoints);
+  const std::uint64_t end = records.size();
+  records += std::string(100, 'r');
+  EXPECT_THROW(parseLas(records, "a.las"), InputError);
+  put(records, 235, end);
+  EXPECT_NO_THROW(parseLas(records, "a.las")) << "extended records";
+}
+
 TEST(LasFormat, RefusesEveryPrefixOfAFile) {
   const std::string bytes = lasFile(4, 6, kPoints);
   for (std::size_t length = 0; length < bytes.size(); ++length)

@@ -90,6 +90,24 @@ TEST(Manifest, MixesFilesFoldersPosesAndFrames) {
   EXPECT_EQ(set.crs(), "EPSG:25832");
 }
 
+TEST(Manifest, BringsEveryPoseFromTheOuterFrameIntoThatOfTheMap) {
+  const ScratchFolder folder;
+  folder.write("seen.pcd",
+               "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 1\nHEIGHT 1\n"
+               "VIEWPOINT 105 0 0 1 0 0 0\nPOINTS 1\nDATA ascii\n1 2 3\n");
+  folder.write("b.xyz", "1 2 3\n");
+  const auto track = folder.write("track.txt", "1 0 0 107 0 1 0 0 0 0 1 0\n");
+  const std::string frame = "map_origin: [100, 0, 0]\nframe: outer\n";
+  const auto seen = folder.write("seen.yaml", frame + "scans: [seen.pcd]\n");
+  const auto posed = folder.write("posed.yaml", frame + "scans: [b.xyz]\n");
+  const auto both =
+      folder.write("both.yaml", frame + "scans: [{path: b.xyz, pose: {xyz: [103, 0, 0], rpy_deg: [0, 0, 0]}}]\n");
+  ProgressSink silent;
+  EXPECT_EQ(ScanSet::open({seen}, {}, silent).file(0).T_map_sensor.translation(), Eigen::Vector3d(5, 0, 0));
+  EXPECT_EQ(ScanSet::open({posed}, {track}, silent).file(0).T_map_sensor.translation(), Eigen::Vector3d(7, 0, 0));
+  EXPECT_EQ(ScanSet::open({both}, {}, silent).file(0).T_map_sensor.translation(), Eigen::Vector3d(3, 0, 0));
+}
+
 TEST(Manifest, OfAFolderSpeaksForTheFolder) {
   const ScratchFolder folder;
   folder.write("a.xyz", "1 2 3\n");

@@ -65,6 +65,17 @@ TEST(PlyFormat, KeepsMillimetresOfWorldCoordinatesInDoubles) {
   EXPECT_NEAR(scan.local_origin.y() + scan.points.y[0], 5412345.125, 1e-4);
 }
 
+TEST(PlyFormat, MovesOriginsOfRaysWithTheLocalOrigin) {
+  const std::string bytes =
+      header("binary_little_endian", 1,
+             "property double vp_x\nproperty double vp_y\nproperty double vp_z\nproperty double x\n"
+             "property double y\nproperty double z\n") +
+      bytesOfAll(456000.125, 5412001.5, 2.0, 456123.123, 5412345.125, 230.5);
+  const ParsedScan scan = parsePly(bytes, "a.ply");
+  EXPECT_EQ(scan.points.origin.at(0) + scan.local_origin.cast<float>() - Eigen::Vector3f(456000, 5412000, 0),
+            Eigen::Vector3f(0.125F, 1.5F, 2));
+}
+
 TEST(PlyFormat, PassesOverOtherElements) {
   const std::string faces = "element face 1\nproperty list uchar int vertex_indices\n";
   const std::string camera = "element camera 1\nproperty float f\n";

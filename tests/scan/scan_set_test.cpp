@@ -228,6 +228,24 @@ TEST(ScanSet, PutsWorldCoordinatesIntoAPlaceOfTheirOwn) {
   EXPECT_THAT(refusalOf([&] { opened({folder.path()}).load(0); }), HasSubstr("but the scan has a pose"));
 }
 
+TEST(ScanSet, TakesPosesAndFarPointsOfScansInMillimetres) {
+  const ScratchFolder folder;
+  folder.write("a.xyz", "41000 5000 100\n1500 2500 -200\n");
+  folder.write("far.xyz", "4100000 0 0\n");
+  folder.write("m.yaml", "scans: [{path: a.xyz, pose: {xyz: [1000, 0, 0], rpy_deg: [0, 0, 0]}}]\n");
+  folder.write("far.yaml", "scans: [{path: far.xyz, pose: {xyz: [1000, 0, 0], rpy_deg: [0, 0, 0]}}]\n");
+  ProgressSink silent;
+  ScanSetParams params;
+  params.frame.unit = LengthUnit::Millimetre;
+  const Scan scan = ScanSet::open({folder.path() / "m.yaml"}, params, silent).load(0);
+  EXPECT_EQ(scan.T_map_sensor.translation(), Eigen::Vector3d(1, 0, 0));
+  EXPECT_NEAR(scan.points.x[0], 41, 1e-5);
+  EXPECT_NEAR(scan.points.x[1], 1.5, 1e-5);
+  EXPECT_NEAR(scan.points.z[1], -0.2, 1e-5);
+  EXPECT_THAT(refusalOf([&] { ScanSet::open({folder.path() / "far.yaml"}, params, silent).load(0); }),
+              HasSubstr("more than 4096 m from the sensor"));
+}
+
 TEST(ScanSet, RefusesWhatItCannotUnderstand) {
   const ScratchFolder folder;
   EXPECT_THAT(refusalOf([&] { opened({folder.path() / "absent"}); }), HasSubstr("there is no such file or folder"));

@@ -92,6 +92,7 @@ INSTANTIATE_TEST_SUITE_P(
                     RefusedLine{"1 2 3\n4 x5 6\n", "a.xyz:2:3: error: y is not a number: 'x5'"},
                     RefusedLine{"1 2.5m 3\n", "a.xyz:1:3: error: y is not a number: '2.5m'"},
                     RefusedLine{"1 2 1e999\n", "z is out of range"},
+                    RefusedLine{"+-1 2 3\n", "a.xyz:1:1: error: x is not a number: '+-1'"},
                     RefusedLine{"1e39 2 3\n", "a.xyz:1:9: error: the point has a coordinate beyond 100000 km"},
                     RefusedLine{"1 2 3\n1 2 3 4\n", "a.xyz:2:7: error: unexpected '4'"},
                     RefusedLine{"1 2 3 4\n1 2 3\n", "a.xyz:2:6: error: the line ends where intensity was expected"},
@@ -118,6 +119,11 @@ TEST(FreiburgText, KeepsTheOriginOfEachRay) {
   ASSERT_EQ(scan.points.origin.size(), 2U);
   EXPECT_EQ(scan.points.origin[1], Eigen::Vector3f(0.1F, 0.2F, 0.4F));
   EXPECT_THAT(scan.points.x, ElementsAre(1.0F, 4.0F));
+}
+
+TEST(FreiburgText, MovesOriginsOfRaysWithTheLocalOrigin) {
+  const ParsedScan scan = parseFreiburgPoints("456000.125 5412001.5 2 456010 5412020 3\n", "scan_0_points.dat");
+  EXPECT_EQ(scan.points.origin.at(0), Eigen::Vector3f(0.125F, 1.5F, 2));
 }
 
 TEST(FreiburgText, RefusesALineOfFiveNumbers) {

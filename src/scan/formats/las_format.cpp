@@ -59,6 +59,24 @@ void checkPointFormat(LasHeader& header, std::string_view bytes, const std::stri
                    std::to_string(format) + ", which has " + std::to_string(kPointFormatBytes[format]));
 }
 
+/// Behind the points only waveforms and extended records may follow, of which the header tells where they begin.
+void checkEnd(const LasHeader& header, std::string_view bytes, const std::string& file) {
+  const unsigned minor = numberAt<std::uint8_t>(bytes, 25);
+  const std::uint64_t end = header.data_offset + header.point_count * header.record_bytes;
+  std::uint64_t next = bytes.size();
+  for (const auto& [since, at] : {std::pair(3U, 227UL), std::pair(4U, 235UL)}) {
+    if (minor < since || numberAt<std::uint16_t>(bytes, 94) < at + 8) continue;
+    const auto begin = numberAt<std::uint64_t>(bytes, at);
+    if (begin >= end) next = std::min(next, begin);
+  }
+  const std::uint64_t more = (next - end) / header.record_bytes;
+  if (more > 0)
+    refuseByte(file, end,
+               "behind the " + std::to_string(header.point_count) + " points of the header lies room for " +
+                   std::to_string(more) + " more",
+               "export the file again, or correct the number of points in its header");
+}
+
 void checkLength(const LasHeader& header, std::string_view bytes, const std::string& file) {
   if (header.point_count == 0) refuseByte(file, 107, "holds no points", "an empty scan cannot be mapped: leave it out");
   const std::uint64_t header_bytes = numberAt<std::uint16_t>(bytes, 94);
@@ -71,6 +89,7 @@ void checkLength(const LasHeader& header, std::string_view bytes, const std::str
     refuseByte(
         file, bytes.size(),
         "the file ends after " + std::to_string(there) + " of " + std::to_string(header.point_count) + " points");
+  checkEnd(header, bytes, file);
 }
 
 LasHeader headerOf(std::string_view bytes, const std::string& file) {

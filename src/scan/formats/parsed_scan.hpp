@@ -17,10 +17,11 @@ namespace cluxel::scan {
 
 struct ParsedScan {
   ScanPoints points;
-  Eigen::Vector3d local_origin = Eigen::Vector3d::Zero();  ///< to be added to every point, in double [m]
-  std::optional<Eigen::Isometry3d> viewpoint;              ///< the sensor's pose, when the file holds one
-  std::vector<std::size_t> no_return;       ///< records without a finite position, ascending; they are not points
-  std::vector<std::string> ignored_fields;  ///< fields whose meaning another field has already
+  /// To be added to every point and to the origin of its ray, in double [m].
+  Eigen::Vector3d local_origin = Eigen::Vector3d::Zero();
+  std::optional<Eigen::Isometry3d> viewpoint;  ///< the sensor's pose, when the file holds one
+  std::vector<std::size_t> no_return;          ///< records without a finite position, ascending; they are not points
+  std::vector<std::string> ignored_fields;     ///< fields whose meaning another field has already
 };
 
 /// A float beyond this is coarser than half a millimetre, so points are stored relative to a local origin.
@@ -59,6 +60,11 @@ class PointCollector {
     scan_->points.y.push_back(static_cast<float>(y - origin.y()));
     scan_->points.z.push_back(static_cast<float>(z - origin.z()));
     return PointUse::Added;
+  }
+  /// The origin of the ray of the last added point; false when it is not finite.
+  bool addOrigin(const Eigen::Vector3d& origin) {
+    scan_->points.origin.push_back((origin - scan_->local_origin).cast<float>());
+    return scan_->points.origin.back().allFinite();
   }
 
   void reserve(std::size_t count) {

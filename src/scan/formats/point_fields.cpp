@@ -167,8 +167,7 @@ std::optional<std::string> RowCollector::add(const PointRow& row) {
   }
   if (has(FieldRole::OriginX)) {
     const Eigen::Vector3d origin(at(row, FieldRole::OriginX), at(row, FieldRole::OriginY), at(row, FieldRole::OriginZ));
-    scan_->points.origin.push_back(origin.cast<float>());
-    if (!scan_->points.origin.back().allFinite()) return "has an origin that is not finite";
+    if (!points_.addOrigin(origin)) return "has an origin that is not finite";
   }
   return std::nullopt;
 }

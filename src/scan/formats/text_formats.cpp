@@ -74,11 +74,9 @@ ParsedScan parseFreiburgPoints(std::string_view bytes, const std::string& file) 
   ParsedScan scan;
   PointCollector points(scan);
   while (scanner.nextLine()) {
-    const auto ox = static_cast<float>(scanner.number("sx"));
-    const auto oy = static_cast<float>(scanner.number("sy"));
-    const auto oz = static_cast<float>(scanner.number("sz"));
-    if (!std::isfinite(ox + oy + oz)) scanner.refuse("the origin is beyond the range of a float");
-    if (addPoint(scanner, points)) scan.points.origin.emplace_back(ox, oy, oz);
+    const double ox = scanner.number("sx"), oy = scanner.number("sy"), oz = scanner.number("sz");
+    if (addPoint(scanner, points) && !points.addOrigin({ox, oy, oz}))
+      scanner.refuse("the origin is beyond the range of a float");
     scanner.endLine("sx sy sz x y z");
   }
   requirePointsOfText(scanner, scan);

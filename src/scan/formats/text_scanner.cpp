@@ -51,7 +51,8 @@ double TextScanner::number(const char* what) {
 double TextScanner::anyNumber(const char* what) {
   if (atLineEnd()) refuse(std::string("the line ends where ") + what + " was expected");
   if (checked_line_ != line_) checkCommas();
-  const char* from = *at_ == '+' ? at_ + 1 : at_;
+  const bool has_plus = *at_ == '+' && at_ + 1 != stop_ && at_[1] != '-';
+  const char* from = has_plus ? at_ + 1 : at_;
   double value = 0;
   const auto [end, error] = std::from_chars(from, stop_, value);
   if (error == std::errc::result_out_of_range) refuse(std::string(what) + " is out of range: '" + wordAt() + "'");
