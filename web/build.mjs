@@ -7,6 +7,7 @@ import { mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { gzipSync } from 'node:zlib';
 import { dirname, join } from 'node:path';
 import { fileURLToPath } from 'node:url';
+import { engineBytes } from './engine.mjs';
 import { licenceText } from './licences.mjs';
 
 const folder = dirname(fileURLToPath(import.meta.url));
@@ -60,7 +61,7 @@ const policy = [
 const page = readFileSync(inFolder('src/page.html'), 'utf8')
   .replace('{{policy}}', () => policy)
   .replace('{{style}}', () => style)
-  .replace('{{engine}}', () => block('engine', readFileSync(inFolder('node_modules/oxigraph/web_bg.wasm'))))
+  .replace('{{engine}}', () => block('engine', engineBytes(folder)))
   .replace('{{worker}}', () => block('worker', Buffer.from(worker)))
   .replace('{{licences}}', () => block('licences', Buffer.from(licenceText(folder))))
   .replace('{{program}}', () => program);

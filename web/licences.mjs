@@ -27,6 +27,9 @@ const holders = {
   oxigraph: 'the Oxigraph developers (chosen from "MIT OR Apache-2.0")',
 };
 
+/** What the page changes in a package. */
+const changes = { oxigraph: ', changed: without GeoSPARQL functions' };
+
 /** The names of packages that are not for development only, from the lock file. */
 function shippedPackages(folder) {
   const lock = JSON.parse(readFileSync(join(folder, 'package-lock.json'), 'utf8'));
@@ -49,7 +52,7 @@ export function licenceText(folder) {
     const full = join(folder, path);
     if (!existsSync(full)) continue;
     const about = JSON.parse(readFileSync(join(full, 'package.json'), 'utf8'));
-    texts.push(`${about.name} ${about.version} (${about.license})\n\n${licenceOf(full, about.name, about.license)}`);
+    texts.push(`${about.name} ${about.version} (${about.license})${changes[about.name] ?? ''}\n\n${licenceOf(full, about.name, about.license)}`);
   }
   return texts.join(`\n\n${'-'.repeat(80)}\n\n`);
 }

@@ -38,17 +38,18 @@ export class ObjectCard {
   private show(object: MapObject | null): void {
     this.element.hidden = object === null;
     if (!object) return;
-    const facts = el('div', { class: 'facts' }), reasons = el('div', { class: 'reasons' });
+    const facts = el('div', { class: 'facts' }), reasons = el('div', { class: 'reasons' }), position = el('dd', { 'data-measure': 'position' }, '…');
     const picture = el('canvas', { class: 'portrait', role: 'img', 'aria-label': `Points of ${object.class.label}` });
     this.picture = picture;
     this.drawSoon(picture, object);
-    this.element.replaceChildren(this.head(object), picture, this.measures(object), this.parts(object), reasons,
+    this.element.replaceChildren(this.head(object), picture, this.measures(object, position), this.parts(object), reasons,
                                  el('details', { ontoggle: (event: Event) => {
                                    if ((event.target as HTMLDetailsElement).open) void this.fillFacts(object, facts);
                                  } }, el('summary', {}, 'All facts and observations'), facts),
                                  this.lineage(object), statementForm(object, this.model, this.service));
     this.element.scrollTop = 0;
     void this.fillReasons(object, reasons);
+    void this.fillPosition(object, position);
   }
 
   /** After the view has shown the selection: reading a picture back waits for the graphics. */
@@ -67,7 +68,7 @@ export class ObjectCard {
               iconButton('close', 'Close the card (Escape)', () => this.store.set('selected', null)));
   }
 
-  private measures(object: MapObject): HTMLElement {
+  private measures(object: MapObject, position: HTMLElement): HTMLElement {
     const { box } = object;
     const item = (name: string, value: string) => el('div', {}, el('dt', {}, name), el('dd', {}, value));
     return el('dl', { class: 'measures' },
@@ -76,10 +77,21 @@ export class ObjectCard {
               item('Length × width', `${rounded(box.length, 2)} × ${rounded(box.width, 2)} m`),
               item('Top above ground', `${rounded(object.top, 2)} m`),
               item('Bottom above ground', `${rounded(object.bottom, 2)} m`),
-              item('Position', `${rounded(box.x, 2)}, ${rounded(box.y, 2)} m`),
+              el('div', {}, el('dt', {}, 'Position'), position),
               item('Mobility', object.class.movable ? 'movable' : 'static'),
               item('Rule', object.rule),
               item('Points after thinning', counted(object.points)));
+  }
+
+  /** The mean of the points, as questions tell it; the middle of the box is another place. */
+  private async fillPosition(object: MapObject, host: HTMLElement): Promise<void> {
+    try {
+      const answer = await this.engine.ask(`PREFIX clx: <${CLX}> SELECT ?x ?y { <${object.iri}> clx:x ?x ; clx:y ?y } ORDER BY ?x ?y LIMIT 1`);
+      const place = (answer as Rows).rows[0]?.map((term) => rounded(Number(term!.value), 2));
+      host.textContent = place ? `${place.join(', ')} m` : 'not in the facts';
+    } catch (fault) {
+      host.replaceChildren(faultNote(fault));
+    }
   }
 
   private parts(object: MapObject): HTMLElement | string {

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs oxigraph beside the page, so that a long question leaves the page usable. The default graph is the union of all
-// graphs, as for `cluxel query`.
+// Runs oxigraph beside the page, so that a long question leaves the page usable. The default graph is that of
+// `cluxel query`: the union of all graphs, or what FROM names.
 import init, { Store } from 'oxigraph/web.js';
 import type { Answer, Ask, FromWorker, Load, RdfTerm, ToWorker } from './answers';
+import { namesDataset } from './dataset';
 import { nquadsOf } from './packed_quads';
 
 interface EngineTerm {
@@ -12,16 +13,22 @@ interface EngineTerm {
   language?: string;
 }
 
-let store: Store | undefined;
+/** The map, and a store without quads, which tells the form of a query at once. */
+interface Stores { map: Store; blank: Store }
+
+const UNKNOWN_FUNCTION = /^The custom function <(.*)> is not supported$/;
+
+let stores: Stores | undefined;
 const scope = self as unknown as { postMessage(message: FromWorker): void };
 
 async function load(message: Load): Promise<void> {
   const start = performance.now();
   await init({ module_or_path: await WebAssembly.compile(message.engine) });
-  store = new Store();
+  const map = new Store();
   for (const piece of nquadsOf(message.terms, new Uint8Array(message.quads)))
-    store.load(piece, { format: 'application/n-quads', no_transaction: true, lenient: true });
-  scope.postMessage({ kind: 'loaded', quads: store.size, milliseconds: performance.now() - start });
+    map.load(piece, { format: 'application/n-quads', no_transaction: true, lenient: true });
+  stores = { map, blank: new Store() };
+  scope.postMessage({ kind: 'loaded', quads: map.size, milliseconds: performance.now() - start });
 }
 
 function termOf(term: EngineTerm | undefined): RdfTerm | null {
@@ -32,36 +39,64 @@ function termOf(term: EngineTerm | undefined): RdfTerm | null {
 }
 
 /** The variables of a SELECT in their order: the engine's solutions leave out unbound ones. */
-function variablesOf(engine: Store, text: string): string[] {
-  const json = engine.query(text, { use_default_graph_as_union: true, results_format: 'csv' }) as unknown as string;
-  const head = json.slice(0, json.search(/\r?\n/));
+function variablesOf(blank: Store, text: string): string[] {
+  const csv = blank.query(text, { results_format: 'csv' }) as unknown as string;
+  const head = csv.slice(0, csv.search(/\r?\n/));
   return head === '' ? [] : head.split(',');
 }
 
-function answerOf(engine: Store, text: string): Answer {
+/** Whether the query is a CONSTRUCT or DESCRIBE: only a graph can be written as triples. */
+function makesGraph(blank: Store, text: string): boolean {
+  try {
+    blank.query(text, { results_format: 'nt' });
+    return true;
+  } catch {
+    return false;
+  }
+}
+
+/** Whether the text has no fault of syntax. */
+function isReadable(blank: Store, text: string): boolean {
+  try {
+    blank.query(text);
+    return true;
+  } catch (fault) {
+    return !/^error at \d/.test(messageOf(fault));
+  }
+}
+
+function answerOf({ map, blank }: Stores, text: string): Answer {
   const start = performance.now();
-  const result = engine.query(text, { use_default_graph_as_union: true }) as unknown;
+  const isUnion = !namesDataset(text, (changed) => isReadable(blank, changed));
+  const result = map.query(text, { use_default_graph_as_union: isUnion }) as unknown;
   const timed = (answer: Answer | Omit<Answer, 'milliseconds'>) =>
     ({ ...answer, milliseconds: performance.now() - start }) as Answer;
   if (typeof result === 'boolean') return timed({ form: 'truth', value: result } as Answer);
-  const items = result as (Map<string, EngineTerm> | { subject: EngineTerm; predicate: EngineTerm; object: EngineTerm })[];
-  if (items.length > 0 && !(items[0] instanceof Map)) {
-    const quads = items as { subject: EngineTerm; predicate: EngineTerm; object: EngineTerm }[];
+  if (makesGraph(blank, text)) {
+    const quads = result as { subject: EngineTerm; predicate: EngineTerm; object: EngineTerm }[];
     const triples = quads.map((quad) => [quad.subject, quad.predicate, quad.object].map((term) => termOf(term)!));
     return timed({ form: 'graph', triples } as Answer);
   }
-  const solutions = items as Map<string, EngineTerm>[], variables = variablesOf(engine, text);
+  const solutions = result as Map<string, EngineTerm>[], variables = variablesOf(blank, text);
   const rows = solutions.map((solution) => variables.map((name) => termOf(solution.get(name))));
   return timed({ form: 'rows', variables, rows } as Answer);
 }
 
+const messageOf = (fault: unknown): string => (fault instanceof Error ? fault.message : String(fault));
+
+/** The engine's words, but for functions that `cluxel query` has and the page has not. */
+function toldFault(fault: unknown): string {
+  const unknown = UNKNOWN_FUNCTION.exec(messageOf(fault));
+  if (!unknown) return messageOf(fault);
+  return `The page has no function <${unknown[1]}>. Ask with cluxel query: it has the functions of GeoSPARQL and Cluxel.`;
+}
+
 function ask(message: Ask): void {
-  if (!store) return scope.postMessage({ kind: 'fault', id: message.id, message: 'The map is not loaded yet.' });
+  if (!stores) return scope.postMessage({ kind: 'fault', id: message.id, message: 'The map is not loaded yet.' });
   try {
-    scope.postMessage({ kind: 'answer', id: message.id, answer: answerOf(store, message.text) });
+    scope.postMessage({ kind: 'answer', id: message.id, answer: answerOf(stores, message.text) });
   } catch (fault) {
-    const text = fault instanceof Error ? fault.message : String(fault);
-    scope.postMessage({ kind: 'fault', id: message.id, message: text });
+    scope.postMessage({ kind: 'fault', id: message.id, message: toldFault(fault) });
   }
 }
 
