@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Wrong poses refined on the command line, and what `register` refuses.
+#include <array>
+#include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "app/program_fixture.hpp"
 
@@ -73,6 +76,35 @@ TEST_F(RegisterCommand, CheckIsExitCodeOneForWrongPosesAndZeroForRefinedOnes) {
   EXPECT_EQ(right.code, 0) << right.out;
   EXPECT_NE(right.out.find("worst residual"), std::string::npos);
   EXPECT_EQ(run("register --check --max-residual 5 " + path("drive").string()).code, 0);
+}
+
+TEST_F(RegisterCommand, CheckIsExitCodeOneWhenAScanIsTooFarOffToBeCompared) {
+  const std::string right = path("exact").string();
+  ASSERT_EQ(run("simulate " + right + " --stops 3 --size 50 --points-per-stop 20000").code, 0);
+  EXPECT_EQ(run("register --check " + right).code, 0);
+  for (const char* off : {"0 0 3", "4 -3 0"}) {
+    std::ifstream poses(right + "/poses.txt");
+    std::ofstream wrong(path("wrong.txt"));
+    std::istringstream by(off);
+    std::array<double, 3> shift{};
+    for (double& part : shift) by >> part;
+    std::string line;
+    for (int number = 0; std::getline(poses, line);) {
+      if (line.starts_with('#')) continue;
+      std::istringstream values(line);
+      for (int i = 0; i < 16; ++i) {
+        double value = 0;
+        values >> value;
+        if (number == 1 && i % 4 == 3 && i < 12) value += shift[static_cast<std::size_t>(i / 4)];
+        wrong << value << (i == 15 ? "\n" : " ");
+      }
+      ++number;
+    }
+    wrong.close();
+    const Outcome check = run("register --check --json " + right + " --poses " + path("wrong.txt").string());
+    EXPECT_EQ(check.code, 1) << off << "\n" << check.out;
+    EXPECT_FALSE(Json::parse(check.out).at("fits").get<bool>());
+  }
 }
 
 TEST_F(RegisterCommand, TheBytesDoNotDependOnTheOrderOfScans) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // `cluxel register`: refines the poses of scans, or measures how well they fit.
+#include <algorithm>
 #include <numbers>
 
 #include "app/command.hpp"
@@ -99,21 +100,33 @@ void printReport(const scan::PoseRegistration& report, const scan::ScanSet& set,
   std::printf(check ? "\n" : " before, %.3f m after\n", report.residual_after_m);
 }
 
+/// Whether measured pairs join all scans that lie beside each other.
+bool areCompared(const scan::PoseRegistration& report) {
+  return std::all_of(report.pairs.begin(), report.pairs.end(), [&](const scan::RegisteredPair& pair) {
+    return report.scans[pair.first].group == report.scans[pair.second].group;
+  });
+}
+
 ExitCode checkPoses(const RegisterOptions& options, const scan::ScanSet& set, Session& session) {
   const scan::PoseRegistration report = measurePoses(set, options.params, session.threadCount(), session.console);
   double worst_m = 0;
   for (const scan::RegisteredPair& pair : report.pairs)
     if (pair.outcome == scan::PairOutcome::Used) worst_m = std::max(worst_m, pair.residual_before_m);
-  const bool fits = worst_m <= options.max_residual_m;
+  const bool all_compared = areCompared(report);
+  const bool fits = all_compared && worst_m <= options.max_residual_m;
   if (session.json) {
     Json json = reportJson(report, set);
     json["worst_residual_m"] = worst_m;
+    json["all_compared"] = all_compared;
     json["fits"] = fits;
     printJson(json);
   } else {
     printReport(report, set, true);
-    std::printf("worst residual %.3f m: %s --max-residual %.3f m\n", worst_m, fits ? "within" : "above",
-                options.max_residual_m);
+    std::printf("worst residual %.3f m: %s --max-residual %.3f m\n", worst_m,
+                worst_m <= options.max_residual_m ? "within" : "above", options.max_residual_m);
+    if (!all_compared)
+      std::printf(
+          "scans with too little overlap to be compared are joined by no other pairs: poses may be wrong there\n");
   }
   return fits ? ExitCode::Done : ExitCode::NegativeFinding;
 }

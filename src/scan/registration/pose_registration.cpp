@@ -57,7 +57,7 @@ class Registration {
   /// Gauss-Newton over all pairs, with points matched anew in each round. `outcomes`: of the last round.
   Poses fine(const std::vector<ScanPair>& pairs, const Poses& given, Poses poses,
              std::vector<PairOutcome>& outcomes) const {
-    constexpr std::size_t kMaxRounds = 8;
+    constexpr std::size_t kMaxRounds = 40;  // some ten where all fits
     constexpr double kFirstReach_m = 0.5, kReach_m = 0.3, kSettled_m = 0.0005;
     for (std::size_t round = 0; round < kMaxRounds; ++round) {
       sink_->progress("join", round + 1, kMaxRounds);
@@ -168,11 +168,14 @@ class Registration {
   ProgressSink* sink_;
 };
 
-std::vector<ScanPlace> placesOf(const RegistrationScans& scans, const Poses& poses) {
+/// Boxes are grown, so that those of two surfaces within `reach_m` meet.
+std::vector<ScanPlace> placesOf(const RegistrationScans& scans, const Poses& poses, double reach_m) {
   std::vector<ScanPlace> places;
   for (std::size_t i = 0; i < poses.size(); ++i) {
     ScanPlace place{.position = poses[i].translation(), .box = {}};
     for (std::size_t k = 0; k < scans.clouds[i].size(); ++k) place.box.extend(poses[i] * scans.clouds[i].point(k));
+    place.box.min().array() -= reach_m / 2;
+    place.box.max().array() += reach_m / 2;
     places.push_back(place);
   }
   return places;
@@ -230,19 +233,22 @@ PoseRegistration registerPoses(const ScanSet& set, const RegistrationParams& par
                                ProgressSink& sink) {
   const RegistrationScans scans = loadForRegistration(set, params, threads, sink);
   const Registration registration(scans, params, threads, sink);
-  const Poses coarse = registration.coarse(nearestPairs(placesOf(scans, scans.given)), scans.given);
-  const std::vector<ScanPair> pairs = widerPairs(placesOf(scans, coarse), kMaxPairDistance_m);
+  const Poses coarse = registration.coarse(nearestPairs(placesOf(scans, scans.given, params.reach_m)), scans.given);
+  const std::vector<ScanPair> pairs = widerPairs(placesOf(scans, coarse, params.reach_m), kMaxPairDistance_m);
   std::vector<PairOutcome> outcomes(pairs.size(), PairOutcome::Used);
   const Poses poses = registration.fine(pairs, scans.given, coarse, outcomes);
-  return reported(scans, poses, pairs, outcomes, registration.evidence(pairs, scans.given, kReportReach_m),
-                  registration.evidence(pairs, poses, kReportReach_m));
+  const std::vector<PairEvidence> after = registration.evidence(pairs, poses, kReportReach_m);
+  for (std::size_t k = 0; k < pairs.size(); ++k)
+    if (outcomes[k] == PairOutcome::Used && after[k].residual_m > params.max_residual_m)
+      outcomes[k] = PairOutcome::LargeResidual;  // of poses that have not settled
+  return reported(scans, poses, pairs, outcomes, registration.evidence(pairs, scans.given, kReportReach_m), after);
 }
 
 PoseRegistration measurePoses(const ScanSet& set, const RegistrationParams& params, unsigned threads,
                               ProgressSink& sink) {
   const RegistrationScans scans = loadForRegistration(set, params, threads, sink);
   const Registration registration(scans, params, threads, sink);
-  const std::vector<ScanPair> pairs = nearestPairs(placesOf(scans, scans.given));
+  const std::vector<ScanPair> pairs = nearestPairs(placesOf(scans, scans.given, params.reach_m));
   const std::vector<PairEvidence> said = registration.evidence(pairs, scans.given, kReportReach_m);
   std::vector<PairOutcome> outcomes;
   for (const PairEvidence& pair : said)
