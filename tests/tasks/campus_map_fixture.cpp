@@ -113,4 +113,9 @@ std::string textAt(const ResultTable& table, std::size_t row, const std::string&
   return term == nullptr ? "" : term->text;
 }
 
+std::string placeOfAStop(const MapReader& map) {
+  const Eigen::Vector3d place = map.clouds().front().T_map_sensor.translation();
+  return std::to_string(place.x()) + "," + std::to_string(place.y());
+}
+
 }  // namespace cluxel::tasks

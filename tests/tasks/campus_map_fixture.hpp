@@ -56,4 +56,7 @@ double numberAt(const ResultTable& table, std::size_t row, const std::string& co
 /// A cell's text; empty when it is unbound.
 std::string textAt(const ResultTable& table, std::size_t row, const std::string& column);
 
+/// Where the sensor stood at one of the stops, as tasks take places. The scans have no times, so none is the last.
+std::string placeOfAStop(const mapping::MapReader& map);
+
 }  // namespace cluxel::tasks

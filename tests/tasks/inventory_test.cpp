@@ -108,6 +108,26 @@ TEST(QuestionsOfACampus, TheInventoryTellsWhichRulesOfPlacesAreMissing) {
   EXPECT_NE(notes(MapReader(file)).find("parking rows and sidewalks are not listed"), std::string::npos);
 }
 
+/// The rows of a register in the map, by status; each is named by its class and place.
+std::map<std::string, std::vector<std::string>> statusesOf(const std::string& name, const std::string& text,
+                                                           const InventoryParams& params = {}) {
+  const MapReader& map = CampusMap::shared().map();
+  const ScratchFolder folder;
+  writeFile(folder.path() / name, text);
+  const auto entries = readRegister(folder.path() / name, map.inputs(), ontologyViewOf(map.quads()));
+  std::map<std::string, std::vector<std::string>> found;
+  for (const TaskRow& row : registerAnswer(map, params, entries, {.within_m = 0.5}).rows)
+    found[std::get<std::string>(row.cells[0])].push_back(std::get<std::string>(row.cells[3]) + " at " +
+                                                         std::to_string(std::get<double>(row.cells[4])) + ", " +
+                                                         std::to_string(std::get<double>(row.cells[5])));
+  return found;
+}
+
+/// The line of an entry.
+std::string lineFor(const std::string& class_name, const Eigen::Vector2d& at) {
+  return class_name + "," + std::to_string(at.x()) + "," + std::to_string(at.y()) + "\n";
+}
+
 TEST(QuestionsOfACampus, ARegisterOfTheMapItselfMatchesWhole) {
   const MapReader& map = CampusMap::shared().map();
   const ScratchFolder folder;
@@ -119,13 +139,16 @@ TEST(QuestionsOfACampus, ARegisterOfTheMapItselfMatchesWhole) {
   std::string text = "id,class,x,y,height\n";
   for (std::size_t i = 1; i < items.size(); ++i)  // the first is not in it
     text += "no " + std::to_string(i) + "," + items[i].kind + "," + std::to_string(items[i].at.x()) + "," +
-            std::to_string(items[i].at.y()) + "," + std::to_string(items[i].height_m - 0.5) + "\n";
+            std::to_string(items[i].at.y()) + "," +
+            (std::isnan(items[i].height_m) ? "" : std::to_string(items[i].height_m - 0.5)) + "\n";
   text += "far,StreetSign,5000,5000,\nnear,UtilityPole," + std::to_string(items[1].at.x() + 4) + "," +
           std::to_string(items[1].at.y()) + ",\n";
   writeFile(file, text);
-  const auto entries = readRegister(file, map.inputs());
+  const auto entries = readRegister(file, map.inputs(), ontologyViewOf(map.quads()));
   ASSERT_EQ(entries.size(), items.size() + 1);
-  const auto rows = compareWith(entries, items, std::vector<bool>(entries.size(), false), {.within_m = 1});
+  const auto things = registerItems(map, {.with_rows = false}, entries);
+  ASSERT_EQ(things.size(), items.size());
+  const auto rows = compareWith(entries, things, std::vector<bool>(entries.size(), false), {.within_m = 1});
   std::map<RegisterStatus, std::size_t> counts;
   for (const RegisterRow& row : rows) ++counts[row.status];
   EXPECT_EQ(counts[RegisterStatus::Matched], items.size() - 1);
@@ -139,12 +162,68 @@ TEST(QuestionsOfACampus, ARegisterOfTheMapItselfMatchesWhole) {
   EXPECT_NEAR(std::get<double>(answer.rows[0].cells[7]), 0.5, 1e-3);
 }
 
+TEST(QuestionsOfACampus, AnInventoryIsARegisterOfItsMapInEveryFormat) {
+  const MapReader& map = CampusMap::shared().map();
+  const TaskAnswer inventory = inventoryAnswer(map, {});
+  const auto is_line = [](const TaskRow& row) { return row.shape.kind == TaskShape::Kind::Line; };
+  ASSERT_GE(std::count_if(inventory.rows.begin(), inventory.rows.end(), is_line), 1) << "a sidewalk";
+  for (const auto& [name, format] :
+       {std::pair("full.csv", AnswerFormat::Csv), {"full.geojson", AnswerFormat::GeoJson}}) {
+    const auto found = statusesOf(name, answerText(map, inventory, format, ExportFrame::Local));
+    ASSERT_EQ(found.size(), 1U) << name << ": " << found.begin()->first << " " << found.begin()->second.front();
+    EXPECT_EQ(found.at("matched").size(), inventory.rows.size()) << name;
+  }
+}
+
+TEST(QuestionsOfACampus, EntriesOfClassesThatAreNotListedAreLookedForAll) {
+  const MapReader& map = CampusMap::shared().map();
+  std::string text = "class,x,y\n";
+  std::size_t entries = 0;
+  for (const InventoryItem& item : inventoryOf(map, {.classes = {"Building", "Vehicle", "Barrier"}})) {
+    if (item.kind == "ParkingRow" || item.kind == "Sidewalk") continue;
+    text += lineFor(item.kind, item.at), ++entries;
+  }
+  const std::size_t objects = entries;
+  ASSERT_GE(objects, 3U);
+  const auto derived =
+      evaluateQuery(map.quads(), "PREFIX clx: <" + std::string(vocabulary::kClx) +
+                                     "> SELECT DISTINCT ?x ?y { ?way a clx:Way ; clx:x ?x ; clx:y ?y }")
+          .table;
+  for (std::size_t row = 0; row < derived.row_count; ++row, ++entries)
+    text += lineFor("Way", {numberAt(derived, row, "x"), numberAt(derived, row, "y")});
+  ASSERT_GT(entries, objects);
+  const auto found =
+      statusesOf("other.csv", text, {.classes = {"StreetLamp"}, .with_rows = false, .with_sidewalks = false});
+  ASSERT_TRUE(found.contains("matched"));
+  EXPECT_EQ(found.at("matched").size(), entries);
+  EXPECT_FALSE(found.contains("missing in the map")) << found.at("missing in the map").front();
+  ASSERT_TRUE(found.contains("not in the register"));
+  for (const std::string& row : found.at("not in the register")) EXPECT_TRUE(row.starts_with("StreetLamp at")) << row;
+}
+
+TEST(QuestionsOfACampus, ARegisterWritesClassesAsOtherPlacesDo) {
+  const MapReader& map = CampusMap::shared().map();
+  const InventoryParams signs{.classes = {"StreetSign"}, .with_rows = false, .with_sidewalks = false};
+  const std::vector<InventoryItem> items = inventoryOf(map, signs);
+  ASSERT_GE(items.size(), 4U);
+  for (const std::string& written : {std::string("street sign"), std::string("clx:StreetSign"),
+                                     vocabulary::clx("StreetSign"), std::string("StreetFurniture")}) {
+    std::string text = "kind,x,y\n";
+    for (const InventoryItem& item : items) text += lineFor(written, item.at);
+    const auto found = statusesOf("signs.csv", text, signs);
+    ASSERT_EQ(found.size(), 1U) << written;
+    EXPECT_EQ(found.begin()->first, "matched") << written;
+  }
+}
+
 TEST(Register, FaultsNameTheirLine) {
   const ScratchFolder folder;
+  OntologyView ontology;
+  ontology.classes.emplace_back().iri = vocabulary::clx("Tree");
   const auto refusal = [&](const std::string& name, const std::string& text) -> std::string {
     writeFile(folder.path() / name, text);
     try {
-      readRegister(folder.path() / name, {});
+      readRegister(folder.path() / name, {}, ontology);
     } catch (const InputError& error) {
       return error.what();
     }
@@ -161,25 +240,54 @@ TEST(Register, FaultsNameTheirLine) {
             "geometry":{"type":"Point","coordinates":[1,2]}}]})"),
             "read");
   EXPECT_NE(refusal("register.txt", "x").find("NAME.csv"), std::string::npos);
+  const std::string classes = refusal("class.csv", "class,x,y\nTree,1,2\nTrea,1,2\n");
+  EXPECT_NE(classes.find(":3:1"), std::string::npos) << classes;
+  EXPECT_NE(classes.find("did you mean 'Tree'"), std::string::npos) << classes;
+  const std::string heights = refusal("height.csv", "class,x,y,height\nTree,1,2,\nTree,1,2,4.5\nTree,1,2,tall\n");
+  EXPECT_NE(heights.find(":4:1"), std::string::npos) << heights;
+  EXPECT_NE(heights.find("'tall' is no number"), std::string::npos) << heights;
+  const auto feature = [&](const std::string& properties, const std::string& geometry) {
+    return refusal("f.geojson",
+                   R"({"frame":"m","features":[{"properties":{)" + properties + R"(},"geometry":)" + geometry + "}]}");
+  };
+  const std::string point = R"({"type":"Point","coordinates":[1,2]})";
+  EXPECT_EQ(feature(R"("kind":"Tree","height":null)", point), "read");
+  EXPECT_EQ(feature(R"("kind":"Tree")", R"({"type":"LineString","coordinates":[[1,2],[3,4]]})"), "read");
+  EXPECT_NE(feature(R"("kind":"Trea")", point).find("feature 1: the map's ontology has no class"), std::string::npos);
+  EXPECT_NE(feature(R"("kind":"Tree","height":"tall")", point).find("feature 1: the height"), std::string::npos);
+  EXPECT_NE(feature(R"("kind":"Tree")", "[]").find("feature 1: it has no class or no place"), std::string::npos);
+}
+
+RegisterItem thingAt(const std::string& object, double x, std::set<std::string> classes) {
+  RegisterItem item;
+  item.thing.object = object;
+  item.thing.class_iri = *classes.begin();
+  item.thing.at = {x, 0};
+  item.classes = std::move(classes);
+  return item;
 }
 
 TEST(Register, PairsAreOneToOneAndNearestFirst) {
-  InventoryItem a, b;
-  a.kind = b.kind = "Tree";
-  a.object = "a";
-  b.object = "b";
-  a.at = {0, 0};
-  b.at = {1.5, 0};
   const std::vector<RegisterEntry> entries{{"1", "Tree", {1, 0}, {}}, {"2", "Tree", {0.9, 0}, {}}};
-  const auto rows = compareWith(entries, {a, b}, {true, true}, {.within_m = 3});
+  const auto rows =
+      compareWith(entries, {thingAt("a", 0, {"Tree"}), thingAt("b", 1.5, {"Tree"})}, {true, true}, {.within_m = 3});
   ASSERT_EQ(rows.size(), 2U);
   EXPECT_EQ(rows[0].item, 1U);
   EXPECT_EQ(rows[1].item, 0U);
 }
 
+TEST(Register, AnEntryOfTheVeryClassComesBeforeOneOfASuperclass) {
+  const std::vector<RegisterEntry> entries{{"1", "Furniture", {0, 0}, {}}, {"2", "Bench", {2, 0}, {}}};
+  const auto rows = compareWith(entries, {thingAt("a", 0.5, {"Bench", "Furniture"})}, {true, true}, {.within_m = 3});
+  ASSERT_EQ(rows.size(), 2U);
+  EXPECT_EQ(rows[0].status, RegisterStatus::MissingInMap);
+  EXPECT_EQ(rows[1].status, RegisterStatus::Matched);
+}
+
 TEST(QuestionsOfACampus, NextViewsSeeWhatIsNotObservedOnceAndInOrder) {
   const MapReader& map = CampusMap::shared().map();
   NextViewRequest request;
+  request.from = placeOfAStop(map);
   request.tour.max_stops = 4;
   const NextViewAnswer answer = nextViews(map, request);
   ASSERT_GE(answer.views.size(), 2U);

@@ -74,6 +74,27 @@ TEST(SightGrid, WithoutObstaclesEveryCellOfTheDiscIsSeen) {
   }
 }
 
+TEST(SightGrid, ViewsFartherThanTheGridSeeAllOfIt) {
+  const GridFrame frame{0, 0, 0.5, 40, 30};
+  for (const double view_m : {30.0, 1e4, 1e9, 1e300})
+    EXPECT_EQ(visibleFrom(openSight(frame), frame.index(3, 29), view_m).size(), frame.size()) << view_m;
+}
+
+TEST(SightGrid, IsSeenFromPlacesOutsideOfIt) {
+  const GridFrame frame{0, 0, 1, 20, 20};
+  SightGrid sight = openSight(frame);
+  const Eigen::Vector2d outside(-5.5, 10.5);
+  std::vector<std::uint32_t> disc;
+  for (std::uint32_t cell = 0; cell < frame.size(); ++cell)
+    if ((frame.centreOf(cell) - outside).norm() <= 12) disc.push_back(cell);
+  EXPECT_EQ(visibleFrom(sight, outside, 12), disc);
+  EXPECT_EQ(visibleFrom(sight, frame.centreOf(207), 6), visibleFrom(sight, 207U, 6)) << "the same inside";
+  for (int y = 0; y < frame.rows; ++y) sight.opaque[frame.index(3, y)] = 1;
+  for (const std::uint32_t cell : visibleFrom(sight, outside, 12)) EXPECT_LE(frame.columnOf(cell), 3);
+  for (const double away : {-40.0, 1e12, -1e300, 1e300})
+    EXPECT_TRUE(visibleFrom(sight, Eigen::Vector2d(away, 10), 12).empty()) << away;
+}
+
 TEST(SightGrid, AWallHidesWhatIsBehindItAndNothingElse) {
   const GridFrame frame{0, 0, 1, 21, 21};
   SightGrid sight = openSight(frame);
@@ -98,7 +119,7 @@ TEST(SearchTour, EachStopIsTheBestOfAllCellsForItsWalk) {
     for (double& value : field.probability) value = static_cast<double>(random() % 100) / 10000;
     SearchParams search;
     search.view_m = 2;  // stops on every cell
-    const TourParams params{.budget_m = 15, .max_stops = 4, .min_probability = 0, .settle_m = 3, .looks_on_way = false};
+    const TourParams params{.budget_m = 15, .max_stops = 4, .settle_m = 3, .looks_on_way = false};
     const auto stops = tourOf(grid, openSight(frame), field, {0.5, 0.5}, search, params);
     ASSERT_FALSE(stops.empty());
     std::uint32_t at = 0;
@@ -138,6 +159,8 @@ TEST(WaysOfACampus, ASearchListsWhatIsKnownAndWhereToLook) {
   const MapReader& map = CampusMap::shared().map();
   SearchRequest request;
   request.class_name = "StreetLamp";
+  EXPECT_THROW(searchFor(map, request), Error) << "no scan is the last";
+  request.from = placeOfAStop(map);
   const SearchAnswer answer = searchFor(map, request);
   for (std::size_t i = 0; i < answer.known.size(); ++i) {
     EXPECT_EQ(localName(map.objects()[answer.known[i].object].class_iri), "StreetLamp");

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// The table of tasks: every task answers with its columns, parameters are checked, answers have the same rows in all
-// formats.
+// The table of tasks: every task answers with its columns, parameters and files of usual places are checked, answers
+// have the same rows in all formats.
 #include <gtest/gtest.h>
 
+#include <map>
 #include <nlohmann/json.hpp>
 
+#include "base/file_bytes.hpp"
+#include "tasks/ask/inventory_task.hpp"
 #include "tasks/ask/task_table.hpp"
 #include "tasks/campus_map_fixture.hpp"
+#include "tasks/search/search_tour.hpp"
 
 namespace cluxel::tasks {
 namespace {
@@ -95,7 +99,9 @@ TEST(QuestionsOfACampus, EveryTaskAnswersInEveryFormatWithTheSameRows) {
   for (const Task& task : allTasks()) {
     SCOPED_TRACE(task.name);
     if (task.name == "changes") continue;  // needs two visits: SiteChangesTest
-    TaskAnswer answer = task.run({map, true, {}}, TaskValues(task.parameters, requiredOf(task)));
+    NamedValues values = requiredOf(task);
+    if (task.name == "search" || task.name == "next-view") values.emplace_back("from", placeOfAStop(map));
+    TaskAnswer answer = task.run({map, true, {}}, TaskValues(task.parameters, values));
     if (answer.columns.empty()) answer.columns = task.columns;
     ASSERT_EQ(answer.columns.size(), task.columns.size());
     for (std::size_t c = 0; c < task.columns.size(); ++c) EXPECT_EQ(answer.columns[c].name, task.columns[c].name);
@@ -133,6 +139,90 @@ TEST(QuestionsOfACampus, AnObjectsRowStandsWhereTheMapSaysItIs) {
     const double rounding_m = 0.01;
     EXPECT_LT(box->second.exteriorDistance(Eigen::Vector3d(at.x(), at.y(), box->second.center().z())), rounding_m);
   }
+}
+
+TEST(QuestionsOfACampus, KindsOfAnInventoryAreWrittenAsClasses) {
+  const MapReader& map = CampusMap::shared().map();
+  const std::vector<Task> tasks = allTasks();
+  const Task& task = taskNamed(tasks, "inventory");
+  const auto kindsOf = [&](const std::vector<std::string>& kinds) {
+    NamedValues values;
+    for (const std::string& kind : kinds) values.emplace_back("kind", kind);
+    std::map<std::string, std::size_t> counts;
+    for (const TaskRow& row : task.run({map, false, {}}, TaskValues(task.parameters, values)).rows)
+      ++counts[std::get<std::string>(row.cells[0])];
+    return counts;
+  };
+  const auto all = kindsOf({});
+  ASSERT_TRUE(all.contains("Sidewalk"));
+  for (const std::string& written :
+       {std::string("Sidewalk"), std::string("sidewalk"), std::string("clx:Sidewalk"), vocabulary::clx("Sidewalk")})
+    EXPECT_EQ(kindsOf({written}), (std::map<std::string, std::size_t>{{"Sidewalk", all.at("Sidewalk")}})) << written;
+  const OntologyView ontology = ontologyViewOf(map.quads());
+  for (const std::string& written :
+       {std::string("ParkingRow"), std::string("parking row"), std::string("clx:ParkingRow")}) {
+    const InventoryParams params = inventoryOfKinds(ontology, {written, "street lamp"});
+    EXPECT_TRUE(params.with_rows) << written;
+    EXPECT_FALSE(params.with_sidewalks);
+    EXPECT_EQ(params.classes, std::vector<std::string>{vocabulary::clx("StreetLamp")});
+  }
+  EXPECT_THROW(inventoryOfKinds(ontology, {"Sidewalc"}), Error);
+}
+
+/// Turtle of usual places of signs: each a probability and a distance, as they are written.
+std::string placesOfSigns(const std::vector<std::pair<std::string, std::string>>& places) {
+  std::string text = "@prefix clx: <" + std::string(vocabulary::kClx) + "> .\n";
+  for (std::size_t i = 0; i < places.size(); ++i)
+    text += "clx:Place" + std::to_string(i) + " a clx:UsualPlace ; clx:usualFor clx:StreetSign ; " +
+            "clx:nearClass clx:Building ; clx:probability " + places[i].first + " ; clx:within " + places[i].second +
+            " .\n";
+  return text;
+}
+
+TEST(QuestionsOfACampus, FaultyUsualPlacesAreRefusedByName) {
+  const OntologyView ontology = ontologyViewOf(CampusMap::shared().map().quads());
+  const ScratchFolder folder;
+  const auto refusal = [&](const std::string& text) -> std::string {
+    writeFile(folder.path() / "places.ttl", text);
+    try {
+      usualPlacesOf(ontology, vocabulary::clx("StreetSign"), folder.path() / "places.ttl");
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find("places.ttl"), std::string::npos) << error.what();
+      return error.what();
+    }
+    return "read";
+  };
+  EXPECT_EQ(refusal(placesOfSigns({{"0.5", "3.0"}, {"5e-1", "12"}})), "read");
+  for (const char* probability : {"\"NaN\"", "-0.5", "0", "1.5", "\"0.5x\""}) {
+    const std::string told = refusal(placesOfSigns({{"0.1", "3"}, {probability, "3"}}));
+    EXPECT_NE(told.find("Place1: clx:probability"), std::string::npos) << told;
+    EXPECT_NE(told.find("above 0 and at most 1"), std::string::npos) << told;
+  }
+  for (const char* within : {"\"abc\"", "-5", "0", "\"INF\""}) {
+    const std::string told = refusal(placesOfSigns({{"0.1", within}}));
+    EXPECT_NE(told.find("Place0: clx:within"), std::string::npos) << told;
+    EXPECT_NE(told.find("a distance above 0 [m]"), std::string::npos) << told;
+  }
+  const std::string clx =
+      "@prefix clx: <" + std::string(vocabulary::kClx) + "> . clx:Here clx:usualFor clx:StreetSign ; ";
+  EXPECT_NE(refusal(clx + "clx:nearClass clx:Building ; clx:within 3 .").find("no clx:probability"), std::string::npos);
+  EXPECT_NE(refusal(clx + "clx:nearClass clx:Bilding ; clx:within 3 ; clx:probability 0.1 .").find("'Building'"),
+            std::string::npos);
+  const std::string sum = refusal(placesOfSigns({{"0.6", "3"}, {"0.7", "12"}}));
+  EXPECT_NE(sum.find("sum to 1.3"), std::string::npos) << sum;
+  EXPECT_NE(sum.find("correct the file"), std::string::npos) << sum;
+}
+
+TEST(SearchField, ReasonsHoldMorePlacesThanAByte) {
+  constexpr std::size_t count = 300;
+  const GridFrame frame{0, 0, 1, static_cast<int>(count), 1};
+  std::vector<PlaceEvidence> places;
+  for (std::size_t i = 0; i < count; ++i) {
+    places.push_back({"Building", 0.5, 0.9 / static_cast<double>(count), std::vector<std::uint8_t>(count, 0)});
+    places.back().is_there[i] = 1;
+  }
+  const SearchField field = fieldOf(frame, std::vector<float>(count, 0.0F), places);
+  for (std::size_t i = 0; i < count; ++i) EXPECT_EQ(field.reason[i], i);
 }
 
 TEST(TaskAnswer, CsvQuotesAndTablesShortenIris) {

@@ -210,11 +210,11 @@ TEST(Walks, EndAtTheirReachAndFindWhatStandsBeside) {
   const std::vector<double> far = walkLengths(passable(terrain), {0.5, 1.5}, 7.5);
   for (std::uint32_t cell = 0; cell < far.size(); ++cell) EXPECT_TRUE(std::isinf(far[cell]) || far[cell] <= 7.5);
   EXPECT_NEAR(far[terrain.frame.index(7, 1)], 7, 1e-9);
-  const auto reached = objectsWithin(terrain, far);
+  const auto reached = objectsWithin(terrain, far, {false});
   ASSERT_EQ(reached.size(), 1U);
   EXPECT_EQ(reached[0].object, 0U);
   EXPECT_NEAR(reached[0].walk_m, 7, 1e-9);
-  EXPECT_TRUE(objectsWithin(terrain, walkLengths(passable(terrain), {0.5, 1.5}, 3)).empty());
+  EXPECT_TRUE(objectsWithin(terrain, walkLengths(passable(terrain), {0.5, 1.5}, 3), {false}).empty());
 }
 
 TEST(ClassNames, AreLocalNamesIrisOrLabelsOfOneClass) {

@@ -107,34 +107,19 @@ struct InventoryArguments {
   bool allow_unfinished = false;
 };
 
-tasks::InventoryParams paramsOf(const InventoryArguments& arguments) {
-  tasks::InventoryParams params;
-  if (arguments.kinds.empty()) return params;
-  params.classes.clear();
-  params.with_rows = params.with_sidewalks = false;
-  for (const std::string& kind : arguments.kinds) {
-    if (kind == "ParkingRow")
-      params.with_rows = true;
-    else if (kind == "Sidewalk")
-      params.with_sidewalks = true;
-    else
-      params.classes.push_back(kind);
-  }
-  return params;
-}
-
 ExitCode inventory(const InventoryArguments& arguments, Session& session) {
   const mapping::MapReader map(arguments.map);
   noteUnfinished(arguments.map, map.isFinished(), arguments.allow_unfinished, session);
   const mapping::MapInputs inputs = map.inputs();
-  if (!arguments.register_file.empty())
-    return printAnswer(map,
-                       registerAnswer(map, paramsOf(arguments), tasks::readRegister(arguments.register_file, inputs),
-                                      arguments.comparison),
-                       arguments.output, session);
+  const rdf::OntologyView ontology = rdf::ontologyViewOf(map.quads());
+  const tasks::InventoryParams params = tasks::inventoryOfKinds(ontology, arguments.kinds);
+  if (!arguments.register_file.empty()) {
+    const auto entries = tasks::readRegister(arguments.register_file, inputs, ontology);
+    return printAnswer(map, registerAnswer(map, params, entries, arguments.comparison), arguments.output, session);
+  }
   const std::vector<tasks::Street> streets =
       arguments.streets.empty() ? std::vector<tasks::Street>() : tasks::readStreets(arguments.streets, inputs);
-  return printAnswer(map, inventoryAnswer(map, paramsOf(arguments), streets), arguments.output, session);
+  return printAnswer(map, inventoryAnswer(map, params, streets), arguments.output, session);
 }
 
 }  // namespace

@@ -51,13 +51,16 @@ ExitCode route(const WayArguments& arguments, Session& session) {
   const Eigen::Vector2d from = tasks::placeNamed(map, arguments.from), to = tasks::placeNamed(map, arguments.to);
   const tasks::PassableGrid grid = passableIn(map, arguments.request);
   const tasks::RouteAnswer answer = findRoutes(grid, from, to, arguments.alternatives);
-  if (arguments.format == "geojson")
+  if (arguments.format == "geojson") {
     print(routesGeoJson(map, grid.frame, answer,
                         arguments.local ? tasks::ExportFrame::Local : tasks::ExportFrame::LongitudeLatitude));
-  else if (session.json)
+    for (const tasks::Barrier& barrier : answer.barriers)
+      session.console.note("the way is closed by " + tasks::barrierText(map, barrier));
+  } else if (session.json) {
     print(routesJson(map, grid.frame, answer));
-  else
+  } else {
     printRoutes(map, answer);
+  }
   return answer.routes.empty() ? ExitCode::NegativeFinding : ExitCode::Done;
 }
 
@@ -69,7 +72,8 @@ ExitCode reach(const WayArguments& arguments, Session& session) {
   const std::vector<double> walk_m = walkLengths(grid, from, reach_m);
   const auto cells = std::count_if(walk_m.begin(), walk_m.end(), [](double length) { return std::isfinite(length); });
   const double area_m2 = static_cast<double>(cells) * grid.frame.cell_m * grid.frame.cell_m;
-  const auto reached = objectsWithin(terrainOf(map, arguments.request.terrain), walk_m);
+  const auto reached =
+      objectsWithin(terrainOf(map, arguments.request.terrain), walk_m, leftOut(map, arguments.request));
   if (session.json) {
     print(reachJson(map, reached, area_m2, arguments.speed_m_s));
     return ExitCode::Done;

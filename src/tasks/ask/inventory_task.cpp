@@ -13,6 +13,7 @@
 #include "mapping/facts/map_facts.hpp"
 #include "mapping/facts/object_geometry.hpp"
 #include "rdf/map_iris.hpp"
+#include "rdf/vocabulary.hpp"
 #include "tasks/ask/task_table.hpp"
 #include "tasks/changes/site_changes.hpp"
 #include "tasks/search/next_view.hpp"
@@ -50,19 +51,6 @@ const std::vector<QueryColumn>& inventoryColumns() {
 TaskShape shapeOfItem(const InventoryItem& item) {
   if (item.line.size() > 1) return {TaskShape::Kind::Line, item.line};
   return {TaskShape::Kind::Point, {item.at}};
-}
-
-InventoryParams inventoryParams(const TaskValues& values) {
-  InventoryParams params;
-  const std::vector<std::string> kinds = values.all("kind");
-  if (kinds.empty()) return params;
-  const auto takeKind = [&](const char* name) { return std::find(kinds.begin(), kinds.end(), name) != kinds.end(); };
-  params.with_rows = takeKind("ParkingRow");
-  params.with_sidewalks = takeKind("Sidewalk");
-  params.classes.clear();
-  for (const std::string& kind : kinds)
-    if (kind != "ParkingRow" && kind != "Sidewalk") params.classes.push_back(kind);
-  return params;
 }
 
 TaskAnswer runNextView(const TaskContext& context, const TaskValues& values) {
@@ -209,6 +197,16 @@ std::optional<std::string> noteOfMissingRules(const mapping::MapReader& map, con
          "rules/ that end in .rq to the map";
 }
 
+/// Which of the places that rules derive a register asks for.
+InventoryParams placesAmong(const std::vector<RegisterEntry>& entries) {
+  const auto names = [&](const char* place) {
+    return std::any_of(entries.begin(), entries.end(), [iri = rdf::vocabulary::clx(place)](const RegisterEntry& entry) {
+      return entry.class_iri == iri;
+    });
+  };
+  return {.classes = {}, .with_rows = names("ParkingRow"), .with_sidewalks = names("Sidewalk")};
+}
+
 }  // namespace
 
 TaskAnswer inventoryAnswer(const mapping::MapReader& map, const InventoryParams& params,
@@ -227,18 +225,20 @@ TaskAnswer inventoryAnswer(const mapping::MapReader& map, const InventoryParams&
   for (const auto& [kind, count] : counts) note += (note.empty() ? "" : ", ") + std::to_string(count) + " " + kind;
   if (!note.empty()) answer.notes.push_back(note);
   if (const auto missing = noteOfMissingRules(map, params)) answer.notes.push_back(*missing);
+  const std::vector<bool> is_gone = goneAmong(map);
+  if (const auto gone = std::count(is_gone.begin(), is_gone.end(), true); gone > 0)
+    answer.notes.push_back("without " + std::to_string(gone) +
+                           " objects of all classes that later scans show to be gone");
   return answer;
 }
 
 TaskAnswer registerAnswer(const mapping::MapReader& map, const InventoryParams& params,
                           const std::vector<RegisterEntry>& entries, const RegisterParams& comparison) {
-  InventoryParams objects = params;
-  objects.with_rows = objects.with_sidewalks = false;
-  const std::vector<InventoryItem> items = inventoryOf(map, objects);
+  const std::vector<RegisterItem> items = registerItems(map, params, entries);
   TaskAnswer answer{{{"status", "text", "matched, missing in the map, not observed, not in the register"},
                      {"entry", "text", "id in the register"},
                      {"object", "IRI", "in the map"},
-                     {"kind", "text", "class"},
+                     {"kind", "text", "class: the register's where it has one"},
                      {"x", "m", "position in the map frame: the register's where it has one"},
                      {"y", "m", "position in the map frame"},
                      {"distance", "m", "between entry and object"},
@@ -247,19 +247,21 @@ TaskAnswer registerAnswer(const mapping::MapReader& map, const InventoryParams& 
   std::map<std::string, std::size_t> counts;
   for (const RegisterRow& row : compareWith(entries, items, observedPlaces(map, entries, comparison), comparison)) {
     const RegisterEntry* entry = row.entry ? &entries[*row.entry] : nullptr;
-    const InventoryItem* item = row.item ? &items[*row.item] : nullptr;
+    const InventoryItem* item = row.item ? &items[*row.item].thing : nullptr;
     const Eigen::Vector2d at = entry != nullptr ? entry->at : item->at;
     const bool has_heights = entry != nullptr && item != nullptr && entry->height_m;
     ++counts[nameOf(row.status)];
-    answer.rows.push_back({{std::string(nameOf(row.status)), entry != nullptr ? namedCell(entry->id) : TaskCell(),
-                            item != nullptr ? namedCell(item->object) : TaskCell(),
-                            entry != nullptr ? entry->kind : item->kind, at.x(), at.y(), measuredCell(row.distance_m),
-                            has_heights ? measuredCell(item->height_m - *entry->height_m) : TaskCell()},
-                           {TaskShape::Kind::Point, {at}}});
+    answer.rows.push_back(
+        {{std::string(nameOf(row.status)), entry != nullptr ? namedCell(entry->id) : TaskCell(),
+          item != nullptr ? namedCell(item->object) : TaskCell(),
+          entry != nullptr ? mapping::localName(entry->class_iri) : item->kind, at.x(), at.y(),
+          measuredCell(row.distance_m), has_heights ? measuredCell(item->height_m - *entry->height_m) : TaskCell()},
+         {TaskShape::Kind::Point, {at}}});
   }
   std::string note;
   for (const auto& [status, count] : counts) note += (note.empty() ? "" : ", ") + std::to_string(count) + " " + status;
   answer.notes.push_back(note);
+  if (const auto missing = noteOfMissingRules(map, placesAmong(entries))) answer.notes.push_back(*missing);
   return answer;
 }
 
@@ -271,7 +273,7 @@ std::vector<Task> surveyTasks() {
                            Kind::Class, false, true}};
   inventory.columns = inventoryColumns();
   inventory.run = [](const TaskContext& context, const TaskValues& values) {
-    return inventoryAnswer(context.map, inventoryParams(values));
+    return inventoryAnswer(context.map, inventoryOfKinds(ontologyViewOf(context.map.quads()), values.all("kind")));
   };
   Task view;
   view.name = "next-view";

@@ -8,6 +8,7 @@
 #include "rdf/map_iris.hpp"
 #include "tasks/ask/task_table.hpp"
 #include "tasks/search/search_tour.hpp"
+#include "tasks/ways/cost_map.hpp"
 #include "tasks/ways/way_report.hpp"
 
 namespace cluxel::tasks {
@@ -88,7 +89,7 @@ TaskAnswer runReach(const TaskContext& context, const TaskValues& values) {
   const double speed_m_s = values.number("speed"), reach_m = values.number("minutes") * 60 * speed_m_s;
   const std::vector<double> walk_m = walkLengths(grid, placeNamed(map, values.text("from")), reach_m);
   TaskAnswer answer;
-  for (const ReachedObject& reached : objectsWithin(terrain, walk_m)) {
+  for (const ReachedObject& reached : objectsWithin(terrain, walk_m, leftOut(map, request))) {
     const std::string iri = iriOfThing(map, reached.object);
     const Eigen::Vector2d at = placeNamed(map, iri);
     answer.rows.push_back({{iri, mapping::localName(map.objects()[reached.object].class_iri), at.x(), at.y(),
@@ -176,21 +177,36 @@ std::vector<Eigen::Vector2d> rectanglesOf(const GridFrame& frame, const std::vec
   return corners;
 }
 
+/// What a cell of a cost map is.
+const char* kindOfCell(const PassableGrid& grid, std::uint32_t cell) {
+  switch (grid.closure[cell]) {
+    case Closure::Open:
+      return isBesideStep(grid, cell) ? "step" : "free";
+    case Closure::Obstacle:
+      return "thing";
+    case Closure::TooSteep:
+      return "too steep";
+    case Closure::TooNarrow:
+      return "too narrow";
+    case Closure::Unobserved:
+      return "unobserved";
+  }
+  return "";
+}
+
 TaskAnswer runCostMap(const TaskContext& context, const TaskValues& values) {
   const PassableGrid grid = passableIn(context.map, wayRequestOf(values));
   TaskAnswer answer;
   const double cell_m2 = grid.frame.cell_m * grid.frame.cell_m;
-  for (const auto& [closure, name] :
-       {std::pair(Closure::Open, "free"), std::pair(Closure::Obstacle, "thing"),
-        std::pair(Closure::TooSteep, "too steep"), std::pair(Closure::TooNarrow, "too narrow"),
-        std::pair(Closure::Unobserved, "unobserved")}) {
-    std::vector<std::uint8_t> marked;
-    for (const Closure cell : grid.closure) marked.push_back(cell == closure ? 1 : 0);
+  for (const std::string_view kind : {"free", "thing", "step", "too steep", "too narrow", "unobserved"}) {
+    std::vector<std::uint8_t> marked(grid.frame.size(), 0);
+    for (std::uint32_t cell = 0; cell < grid.frame.size(); ++cell)
+      marked[cell] = kindOfCell(grid, cell) == kind ? 1 : 0;
     const auto count = std::count(marked.begin(), marked.end(), 1);
     if (count == 0) continue;
     TaskShape shape;
-    if (closure != Closure::Unobserved) shape = {TaskShape::Kind::Area, rectanglesOf(grid.frame, marked)};
-    answer.rows.push_back({{std::string(name), static_cast<double>(count) * cell_m2}, std::move(shape)});
+    if (kind != "unobserved") shape = {TaskShape::Kind::Area, rectanglesOf(grid.frame, marked)};
+    answer.rows.push_back({{std::string(kind), static_cast<double>(count) * cell_m2}, std::move(shape)});
   }
   return answer;
 }
@@ -207,7 +223,7 @@ Task routeTask() {
            {"cost", "1", "a metre costs 1, more on slopes, beside things and far from what it should stay near"},
            {"climb", "m", "sum of all that goes up"},
            {"steepest", "1", "largest slope, rise over run"},
-           {"highestStep", "m", "between neighbouring cells"},
+           {"highestStep", "m", "of the kerbs that it crosses"},
            {"narrowest", "m", "free width at the narrowest place; absent without things"}},
           false,
           {},

@@ -12,7 +12,6 @@
 #include "base/convex_hull.hpp"
 #include "mapping/facts/object_geometry.hpp"
 #include "rdf/map_iris.hpp"
-#include "rdf/ontology/ontology.hpp"
 #include "rdf/vocabulary.hpp"
 #include "sparql/query_engine.hpp"
 #include "tasks/ways/route.hpp"
@@ -46,17 +45,6 @@ double crownDiameter(const rules::SemanticObject& tree, const perception::SceneC
     corners.insert(corners.end(), {low, {high.x(), low.y()}, {low.x(), high.y()}, high});
   }
   return 2 * std::sqrt(hullArea(convexHull(std::move(corners))) / std::numbers::pi);
-}
-
-InventoryItem measuredItem(const mapping::MapReader& map, const rules::SemanticObject& object) {
-  const perception::SceneCluxels& cluxels = map.scene().cluxels;
-  InventoryItem item;
-  item.kind = mapping::localName(object.class_iri);
-  item.object = rdf::iriOfObject(object.id);
-  item.height_m = mapping::geometryOf(cluxels, mapping::cluxelsOf(object)).top_m;
-  item.at = mapping::geometryOf(cluxels, partCluxels(object, rdf::vocabulary::clx("TreeTrunk"))).centroid.head<2>();
-  if (item.kind == "Tree") item.crown_m = crownDiameter(object, cluxels);
-  return item;
 }
 
 double distanceToCourse(const Eigen::Vector2d& p, const std::vector<Eigen::Vector2d>& course) {
@@ -103,6 +91,7 @@ InventoryItem rowOf(std::vector<ParkedVehicle> vehicles) {
             [&](const auto& a, const auto& b) { return a.at.dot(along) < b.at.dot(along); });
   InventoryItem row;
   row.kind = "ParkingRow";
+  row.class_iri = rdf::vocabulary::clx(row.kind);
   row.at = middle;
   row.count = vehicles.size();
   for (const ParkedVehicle& vehicle : vehicles) row.line.push_back(vehicle.at);
@@ -118,7 +107,9 @@ InventoryItem rowOf(std::vector<ParkedVehicle> vehicles) {
 /// The rows that the map's rules derived, and what stands in them.
 std::vector<InventoryItem> parkingRows(const mapping::MapReader& map) {
   std::map<std::string, const rules::SemanticObject*> object_named;
-  for (const rules::SemanticObject& object : map.objects()) object_named[rdf::iriOfObject(object.id)] = &object;
+  const std::vector<bool> is_gone = goneAmong(map);
+  for (std::size_t i = 0; i < is_gone.size(); ++i)
+    if (!is_gone[i]) object_named[rdf::iriOfObject(map.objects()[i].id)] = &map.objects()[i];
   const sparql::ResultTable members =
       sparql::evaluateQuery(map.quads(),
                             "PREFIX clx: <" + std::string(rdf::vocabulary::kClx) +
@@ -151,6 +142,7 @@ std::vector<InventoryItem> sidewalksOf(const mapping::MapReader& map) {
     const auto number = [&](std::size_t column) { return std::stod(ways.at(i, column)->text); };
     InventoryItem& item = found.emplace_back();
     item.kind = "Sidewalk";
+    item.class_iri = rdf::vocabulary::clx(item.kind);
     item.object = ways.at(i, 0)->text;
     item.at = {number(1), number(2)};
     item.length_m = number(3);
@@ -168,16 +160,48 @@ std::vector<InventoryItem> sidewalksOf(const mapping::MapReader& map) {
 
 }  // namespace
 
+InventoryParams inventoryOfKinds(const rdf::OntologyView& ontology, const std::vector<std::string>& kinds) {
+  InventoryParams params;
+  if (kinds.empty()) return params;
+  params.classes.clear();
+  params.with_rows = params.with_sidewalks = false;
+  for (const std::string& kind : kinds) {
+    const std::string iri = classNamed(ontology, kind);
+    if (iri == rdf::vocabulary::clx("ParkingRow"))
+      params.with_rows = true;
+    else if (iri == rdf::vocabulary::clx("Sidewalk"))
+      params.with_sidewalks = true;
+    else
+      params.classes.push_back(iri);
+  }
+  return params;
+}
+
+InventoryItem measuredItem(const mapping::MapReader& map, const rules::SemanticObject& object) {
+  const perception::SceneCluxels& cluxels = map.scene().cluxels;
+  InventoryItem item;
+  item.kind = mapping::localName(object.class_iri);
+  item.class_iri = object.class_iri;
+  item.object = rdf::iriOfObject(object.id);
+  item.height_m = mapping::geometryOf(cluxels, mapping::cluxelsOf(object)).top_m;
+  item.at = mapping::geometryOf(cluxels, partCluxels(object, rdf::vocabulary::clx("TreeTrunk"))).centroid.head<2>();
+  if (item.kind == "Tree") item.crown_m = crownDiameter(object, cluxels);
+  return item;
+}
+
 std::vector<InventoryItem> inventoryOf(const mapping::MapReader& map, const InventoryParams& params,
                                        const std::vector<Street>& streets) {
   const rdf::OntologyView ontology = ontologyViewOf(map.quads());
   std::vector<std::string> wanted;
   for (const std::string& name : params.classes) wanted.push_back(classNamed(ontology, name));
+  const std::vector<bool> is_gone = goneAmong(map);
   std::vector<InventoryItem> items;
-  for (const rules::SemanticObject& object : map.objects())
-    if (std::any_of(wanted.begin(), wanted.end(),
-                    [&](const std::string& iri) { return ontology.isA(object.class_iri, iri); }))
-      items.push_back(measuredItem(map, object));
+  for (std::size_t i = 0; i < is_gone.size(); ++i) {
+    const rules::SemanticObject& object = map.objects()[i];
+    const bool is_wanted = std::any_of(wanted.begin(), wanted.end(),
+                                       [&](const std::string& iri) { return ontology.isA(object.class_iri, iri); });
+    if (is_wanted && !is_gone[i]) items.push_back(measuredItem(map, object));
+  }
   std::stable_sort(items.begin(), items.end(), [](const auto& a, const auto& b) { return a.kind < b.kind; });
   std::vector<InventoryItem> derived;
   if (params.with_rows) derived = parkingRows(map);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "mapping/map_reader.hpp"
+#include "rdf/ontology/ontology.hpp"
 
 namespace cluxel::tasks {
 
@@ -17,6 +18,7 @@ inline constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
 /// One entry. Sizes that do not apply to its kind are kNotMeasured.
 struct InventoryItem {
   std::string kind;                              ///< local name of the class
+  std::string class_iri;                         ///< of the object, or clx:ParkingRow or clx:Sidewalk
   std::string object;                            ///< IRI of the object or way; empty for a row
   std::string street;                            ///< name of the nearest street; empty: none is known near it
   Eigen::Vector2d at = Eigen::Vector2d::Zero();  ///< [m, map]; of a tree its trunk
@@ -40,7 +42,14 @@ struct InventoryParams {
   bool with_sidewalks = true;   ///< also the ways that the rules call sidewalks
 };
 
-/// Objects first, by class and IRI, then rows and sidewalks by place. Throws Error (NotFound) for an unknown class.
+/// What is of the named classes, written as classNamed() takes them. clx:ParkingRow and clx:Sidewalk are the rows and
+/// the sidewalks. The defaults without names. Throws Error (NotFound) for an unknown class.
+InventoryParams inventoryOfKinds(const rdf::OntologyView& ontology, const std::vector<std::string>& kinds);
+
+/// One object, without its street.
+InventoryItem measuredItem(const mapping::MapReader& map, const rules::SemanticObject& object);
+/// Without objects that later scans show to be gone. Objects first, by class and IRI, then rows and sidewalks by place.
+/// Throws Error (NotFound) for an unknown class.
 std::vector<InventoryItem> inventoryOf(const mapping::MapReader& map, const InventoryParams& params,
                                        const std::vector<Street>& streets = {});
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -13,24 +14,27 @@
 namespace cluxel::tasks {
 
 struct RegisterEntry {
-  std::string id, kind;                          ///< kind: local name of a class
+  std::string id, class_iri;
   Eigen::Vector2d at = Eigen::Vector2d::Zero();  ///< [m, map]
   std::optional<double> height_m;
 };
 
 /// Reads a register. CSV: a header with the columns class (or kind), then x and y [m, map] or lon and lat [deg], and if
-/// there are, id and height [m]. GeoJSON: points with the properties class (or kind), id and height, in longitude and
-/// latitude, or in metres where the collection has the member "frame" as Cluxel writes it. Degrees need the map's
-/// coordinate system. Throws InputError with the line or the feature of every fault.
-std::vector<RegisterEntry> readRegister(const std::filesystem::path& file, const mapping::MapInputs& inputs);
-/// Reads lines with the property "name" from GeoJSON, likewise.
+/// there are, id and height [m]. GeoJSON: points or lines with the properties class (or kind), id and height, in
+/// longitude and latitude, or in metres where the collection has the member "frame" as Cluxel writes it. Degrees need
+/// the map's coordinate system. Classes are written as classNamed() takes them. The place of a line is that of the
+/// inventory: the middle one of its points, of a parking row their mean. Throws InputError with the line or the feature
+/// of every fault.
+std::vector<RegisterEntry> readRegister(const std::filesystem::path& file, const mapping::MapInputs& inputs,
+                                        const rdf::OntologyView& ontology);
+/// Reads lines with the property "name" from GeoJSON, in degrees or metres as a register.
 std::vector<Street> readStreets(const std::filesystem::path& file, const mapping::MapInputs& inputs);
 
 enum class RegisterStatus : std::uint8_t {
   Matched,
   MissingInMap,   ///< its place was observed, and the map holds nothing of the class there
   NotObserved,    ///< no scan saw its place from near enough
-  NotInRegister,  ///< the map holds it, the register does not
+  NotInRegister,  ///< the map holds it and it is listed, the register does not hold it
 };
 const char* nameOf(RegisterStatus status);
 
@@ -45,9 +49,22 @@ struct RegisterRow {
   double distance_m = kNotMeasured;
 };
 
-/// Pairs of one kind, nearest first, each entry and item once; then what is left. In the order of the entries, then of
-/// the items. `is_observed`: per entry.
-std::vector<RegisterRow> compareWith(const std::vector<RegisterEntry>& entries, const std::vector<InventoryItem>& items,
+/// A thing of the map that entries are compared with.
+struct RegisterItem {
+  InventoryItem thing;
+  bool is_listed = false;              ///< it is of the inventory that was asked for
+  std::set<std::string> classes = {};  ///< those classes of entries that it is of
+};
+
+/// The inventory, then everything else in the map that is of a class of an entry: objects, their parts, and what rules
+/// derived. What rules call an object counts beside its class.
+std::vector<RegisterItem> registerItems(const mapping::MapReader& map, const InventoryParams& params,
+                                        const std::vector<RegisterEntry>& entries);
+
+/// Pairs of an entry and a thing of its class or of a subclass, each once: those of the very class first, then nearest
+/// first. Then what is left of the entries and of the listed things. In the order of the entries, then of the items.
+/// `is_observed`: per entry.
+std::vector<RegisterRow> compareWith(const std::vector<RegisterEntry>& entries, const std::vector<RegisterItem>& items,
                                      const std::vector<bool>& is_observed, const RegisterParams& params);
 std::vector<bool> observedPlaces(const mapping::MapReader& map, const std::vector<RegisterEntry>& entries,
                                  const RegisterParams& params);

@@ -5,12 +5,14 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "base/ascii.hpp"
 #include "base/file_bytes.hpp"
-#include "base/nearest_name.hpp"
 #include "base/utf8.hpp"
 #include "cluxel/error.hpp"
+#include "rdf/vocabulary.hpp"
 #include "tasks/export/proj_geo_reference.hpp"
 #include "tasks/inventory/register.hpp"
+#include "tasks/ways/route.hpp"
 
 namespace cluxel::tasks {
 
@@ -60,7 +62,8 @@ std::vector<std::string> csvFields(const std::string& line) {
   return fields;
 }
 
-std::optional<double> registerNumber(const std::string& text) {
+std::optional<double> registerNumber(std::string_view written) {
+  const std::string_view text = trimmed(written);
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   const bool is_read = error == std::errc() && end == text.data() + text.size() && std::isfinite(value);
@@ -77,7 +80,41 @@ struct CsvHeader {
   }
 };
 
-std::vector<RegisterEntry> readCsvRegister(const std::filesystem::path& file, const mapping::MapInputs& inputs) {
+/// Takes what was written for the class and the height of an entry, and collects faults.
+class EntryReader {
+ public:
+  explicit EntryReader(const rdf::OntologyView& ontology) : ontology_(ontology) {}
+
+  /// `place`: where faults are, with what stands in front of their messages.
+  void read(RegisterEntry& entry, const std::string& kind, std::string_view height, const Diagnostic& place) {
+    try {
+      entry.class_iri = classNamed(ontology_, kind);
+    } catch (const Error& error) {
+      addFault(place, error.what(), "");
+    }
+    if (trimmed(height).empty()) return;
+    entry.height_m = registerNumber(height);
+    if (!entry.height_m)
+      addFault(place, "the height '" + std::string(height) + "' is no number", "write metres with a point, or nothing");
+  }
+
+  void addFault(Diagnostic place, const std::string& what, const std::string& hint) {
+    place.message += what;
+    place.hint = hint;
+    faults_.push_back(std::move(place));
+  }
+
+  void throwFaults() {
+    if (!faults_.empty()) throw InputError(std::move(faults_));
+  }
+
+ private:
+  const rdf::OntologyView& ontology_;
+  std::vector<Diagnostic> faults_;
+};
+
+std::vector<RegisterEntry> readCsvRegister(const std::filesystem::path& file, const mapping::MapInputs& inputs,
+                                           EntryReader reader) {
   const std::string text = readFile(file);
   std::istringstream lines{std::string(withoutByteOrderMark(text))};
   std::string line;
@@ -92,24 +129,22 @@ std::vector<RegisterEntry> readCsvRegister(const std::filesystem::path& file, co
                      "write class,x,y (metres of the map frame) or class,lon,lat; id and height may follow");
   const PlaceReader place = readerOf(is_degrees, file, inputs);
   std::vector<RegisterEntry> entries;
-  std::vector<Diagnostic> faults;
   for (std::size_t number = 2; std::getline(lines, line); ++number) {
     const std::vector<std::string> fields = csvFields(line);
     if (fields.size() == 1 && fields[0].empty()) continue;
-    const auto px = x < fields.size() ? registerNumber(fields[x]) : std::nullopt;
-    const auto py = y < fields.size() ? registerNumber(fields[y]) : std::nullopt;
-    if (!px || !py || kind >= fields.size() || fields[kind].empty()) {
-      faults.push_back({Severity::Error,
-                        {file.string(), number, 1, std::nullopt},
-                        "the line has no class or no place",
-                        "write numbers with a point",
-                        line});
+    const auto field = [&](std::size_t column) { return column < fields.size() ? fields[column] : std::string(); };
+    const Diagnostic here{Severity::Error, {file.string(), number, 1, std::nullopt}, "", "", line};
+    const auto px = registerNumber(field(x)), py = registerNumber(field(y));
+    if (!px || !py || trimmed(field(kind)).empty()) {
+      reader.addFault(here, "the line has no class or no place", "write numbers with a point");
       continue;
     }
-    entries.push_back({id < fields.size() ? fields[id] : std::to_string(number - 1), fields[kind], place(*px, *py),
-                       height < fields.size() ? registerNumber(fields[height]) : std::nullopt});
+    RegisterEntry& entry = entries.emplace_back();
+    entry.id = id < fields.size() ? fields[id] : std::to_string(number - 1);
+    entry.at = place(*px, *py);
+    reader.read(entry, field(kind), field(height), here);
   }
-  if (!faults.empty()) throw InputError(std::move(faults));
+  reader.throwFaults();
   return entries;
 }
 
@@ -125,10 +160,12 @@ PlaceReader geoJsonReader(const nlohmann::json& json, const std::filesystem::pat
   return readerOf(!json.contains("frame"), file, inputs);
 }
 
+/// A property as text; empty when it is not there, or null.
 std::string textProperty(const nlohmann::json& feature, const char* name) {
   const auto properties = feature.find("properties");
   if (properties == feature.end() || !properties->is_object() || !properties->contains(name)) return {};
   const nlohmann::json& value = (*properties)[name];
+  if (value.is_null()) return {};
   return value.is_string() ? value.get<std::string>() : value.dump();
 }
 
@@ -136,38 +173,59 @@ bool isPosition(const nlohmann::json& json) {
   return json.is_array() && json.size() >= 2 && json[0].is_number() && json[1].is_number();
 }
 
-InputError faultyFeature(const std::filesystem::path& file, std::size_t number, const std::string& wanted) {
-  return {{.file = file.string()}, "feature " + std::to_string(number + 1) + " cannot be read", wanted};
+/// The positions of a Point (one) or of a LineString; empty for anything else.
+std::vector<Eigen::Vector2d> positionsOf(const nlohmann::json& feature, const PlaceReader& place) {
+  const auto geometry = feature.find("geometry");
+  if (geometry == feature.end() || !geometry->is_object() || !geometry->contains("coordinates")) return {};
+  const nlohmann::json& coordinates = (*geometry)["coordinates"];
+  const bool is_line = geometry->value("type", nlohmann::json()) == "LineString";
+  const nlohmann::json line = is_line ? coordinates : nlohmann::json::array({coordinates});
+  if (!line.is_array() || !std::all_of(line.begin(), line.end(), isPosition)) return {};
+  std::vector<Eigen::Vector2d> positions;
+  for (const nlohmann::json& p : line) positions.push_back(place(p[0].get<double>(), p[1].get<double>()));
+  return positions;
 }
 
-std::vector<RegisterEntry> readGeoJsonRegister(const std::filesystem::path& file, const mapping::MapInputs& inputs) {
+/// Where the inventory says that a thing with this line is.
+Eigen::Vector2d placeOnLine(const std::vector<Eigen::Vector2d>& line, const std::string& class_iri) {
+  if (class_iri != rdf::vocabulary::clx("ParkingRow")) return line[line.size() / 2];
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  for (const Eigen::Vector2d& p : line) sum += p;
+  return sum / static_cast<double>(line.size());
+}
+
+std::vector<RegisterEntry> readGeoJsonRegister(const std::filesystem::path& file, const mapping::MapInputs& inputs,
+                                               EntryReader reader) {
   const nlohmann::json json = geoJsonOf(file);
   const PlaceReader place = geoJsonReader(json, file, inputs);
   std::vector<RegisterEntry> entries;
   for (std::size_t i = 0; i < json["features"].size(); ++i) {
     const nlohmann::json& feature = json["features"][i];
-    RegisterEntry entry;
-    entry.kind = textProperty(feature, "class");
-    if (entry.kind.empty()) entry.kind = textProperty(feature, "kind");
-    const nlohmann::json position =
-        feature.is_object() ? feature.value("/geometry/coordinates"_json_pointer, nlohmann::json()) : nlohmann::json();
-    if (entry.kind.empty() || !isPosition(position))
-      throw faultyFeature(file, i, "write a Point with the property class");
-    entry.at = place(position[0].get<double>(), position[1].get<double>());
-    entry.id = textProperty(feature, "id");
-    if (entry.id.empty()) entry.id = std::to_string(i + 1);
-    entry.height_m = registerNumber(textProperty(feature, "height"));
-    entries.push_back(std::move(entry));
+    const std::string number = std::to_string(i + 1), named = textProperty(feature, "class");
+    const std::string kind = named.empty() ? textProperty(feature, "kind") : named;
+    const Diagnostic here{Severity::Error, {.file = file.string()}, "feature " + number + ": ", "", ""};
+    const std::vector<Eigen::Vector2d> positions = positionsOf(feature, place);
+    if (kind.empty() || positions.empty()) {
+      reader.addFault(here, "it has no class or no place", "write a Point or LineString with the property class");
+      continue;
+    }
+    RegisterEntry& entry = entries.emplace_back();
+    const std::string id = textProperty(feature, "id");
+    entry.id = id.empty() ? number : id;
+    reader.read(entry, kind, textProperty(feature, "height"), here);
+    entry.at = placeOnLine(positions, entry.class_iri);
   }
+  reader.throwFaults();
   return entries;
 }
 
 }  // namespace
 
-std::vector<RegisterEntry> readRegister(const std::filesystem::path& file, const mapping::MapInputs& inputs) {
+std::vector<RegisterEntry> readRegister(const std::filesystem::path& file, const mapping::MapInputs& inputs,
+                                        const rdf::OntologyView& ontology) {
   const std::string ending = file.extension();
-  if (ending == ".csv") return readCsvRegister(file, inputs);
-  if (ending == ".geojson" || ending == ".json") return readGeoJsonRegister(file, inputs);
+  if (ending == ".csv") return readCsvRegister(file, inputs, EntryReader(ontology));
+  if (ending == ".geojson" || ending == ".json") return readGeoJsonRegister(file, inputs, EntryReader(ontology));
   throw InputError({.file = file.string()}, "a register is a file NAME.csv or NAME.geojson");
 }
 
@@ -177,12 +235,10 @@ std::vector<Street> readStreets(const std::filesystem::path& file, const mapping
   std::vector<Street> streets;
   for (std::size_t i = 0; i < json["features"].size(); ++i) {
     const nlohmann::json& feature = json["features"][i];
-    Street street{textProperty(feature, "name"), {}};
-    const nlohmann::json line =
-        feature.is_object() ? feature.value("/geometry/coordinates"_json_pointer, nlohmann::json()) : nlohmann::json();
-    const bool is_line = line.is_array() && !line.empty() && std::all_of(line.begin(), line.end(), isPosition);
-    if (street.name.empty() || !is_line) throw faultyFeature(file, i, "write a LineString with the property name");
-    for (const nlohmann::json& p : line) street.course.push_back(place(p[0].get<double>(), p[1].get<double>()));
+    Street street{textProperty(feature, "name"), positionsOf(feature, place)};
+    if (street.name.empty() || street.course.size() < 2)
+      throw InputError({.file = file.string()}, "feature " + std::to_string(i + 1) + " cannot be read",
+                       "write a LineString with the property name");
     streets.push_back(std::move(street));
   }
   return streets;

@@ -1,9 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // A search in a map: usual places of the ontology, objects that are there, and the tour.
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
+#include <cstdio>
+#include <limits>
 #include <nlohmann/json.hpp>
+#include <optional>
 
+#include "base/ascii.hpp"
 #include "cluxel/error.hpp"
 #include "rdf/map_iris.hpp"
 #include "rdf/ontology/ontology.hpp"
@@ -17,10 +23,11 @@ namespace cluxel::tasks {
 namespace {
 
 std::vector<KnownObject> knownOf(const mapping::MapReader& map, const rdf::OntologyView& ontology,
-                                 const std::string& class_iri, const Eigen::Vector2d& from) {
+                                 const std::string& class_iri, const Eigen::Vector2d& from,
+                                 const std::vector<bool>& is_gone) {
   std::vector<KnownObject> known;
   for (std::uint32_t i = 0; i < map.objects().size(); ++i)
-    if (ontology.isA(map.objects()[i].class_iri, class_iri))
+    if (!is_gone[i] && ontology.isA(map.objects()[i].class_iri, class_iri))
       known.push_back({i, (placeNamed(map, map.objects()[i].id.hex()) - from).norm()});
   std::stable_sort(known.begin(), known.end(),
                    [](const auto& a, const auto& b) { return a.distance_m < b.distance_m; });
@@ -34,31 +41,101 @@ double shown(double value) {
 }  // namespace
 
 Eigen::Vector2d lastStop(const mapping::MapReader& map) {
-  const std::vector<mapping::Cloud> clouds = map.clouds();
-  if (clouds.empty()) throw Error(ErrorKind::NotFound, "the map holds no scans; name the start of the search");
+  std::vector<mapping::Cloud> clouds = map.clouds();
+  std::erase_if(clouds, [](const mapping::Cloud& cloud) { return !cloud.has_pose; });
+  if (clouds.empty())
+    throw Error(ErrorKind::NotFound, "no scan of the map tells where its sensor stood; name the start (from)");
   const auto last = std::max_element(clouds.begin(), clouds.end(), [](const auto& a, const auto& b) {
-    return std::pair(a.time_s.value_or(-1e300), a.source) < std::pair(b.time_s.value_or(-1e300), b.source);
+    return std::pair(a.time_s, a.id) < std::pair(b.time_s, b.id);  // no time is earlier than any
   });
+  if (clouds.size() > 1 && !last->time_s)
+    throw Error(ErrorKind::NotFound,
+                "the scans of the map have no times, so that none is the last; name the start (from)");
   return last->T_map_sensor.translation().head<2>();
 }
+
+namespace {
+
+/// The whole text as a finite number.
+std::optional<double> numberOfPlace(const Term* term) {
+  std::string_view text = term == nullptr ? std::string_view() : trimmed(term->text);
+  if (text.starts_with('+')) text.remove_prefix(1);
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+/// clx:Name for an IRI of the vocabulary, so that messages suggest names.
+std::string shortClass(const std::string& iri) {
+  return iri.starts_with(rdf::vocabulary::kClx) ? "clx:" + iri.substr(rdf::vocabulary::kClx.size()) : iri;
+}
+
+/// Reads a usual place from a row ?place ?near ?within ?share. Collects its faults.
+rdf::UsualPlace placeInRow(const rdf::OntologyView& ontology, const sparql::ResultTable& table, std::size_t row,
+                           const std::filesystem::path& file, std::vector<Diagnostic>& faults) {
+  const auto addFault = [&](const std::string& what, const std::string& hint) {
+    const std::string place = mapping::localName(table.at(row, 0)->text);
+    faults.push_back({Severity::Error, {.file = file.string()}, "usual place " + place + ": " + what, hint, ""});
+  };
+  const auto number = [&](std::size_t column, const char* name, double most, const char* wanted) {
+    const Term* term = table.at(row, column);
+    const std::optional<double> value = numberOfPlace(term);
+    if (value && *value > 0 && *value <= most) return *value;
+    addFault(term == nullptr ? "it has no " + std::string(name) : std::string(name) + " is '" + term->text + "'",
+             wanted);
+    return 0.0;
+  };
+  rdf::UsualPlace place;
+  try {
+    if (const Term* near = table.at(row, 1)) place.near_class = classNamed(ontology, shortClass(near->text));
+  } catch (const Error& error) {
+    addFault(std::string("clx:nearClass: ") + error.what(), "write a class of the ontology");
+  }
+  if (table.at(row, 1) == nullptr) addFault("it has no clx:nearClass", "write a class of the ontology");
+  place.within_m = number(2, "clx:within", std::numeric_limits<double>::max(), "write a distance above 0 [m]");
+  place.probability = number(3, "clx:probability", 1, "write a probability above 0 and at most 1");
+  return place;
+}
+
+/// Throws InputError for places of a class that are too many or too probable.
+void checkTogether(const std::vector<rdf::UsualPlace>& places, const std::string& class_name,
+                   const std::filesystem::path& file) {
+  constexpr double rounding = 1e-9;
+  double sum = 0;
+  for (const rdf::UsualPlace& place : places) sum += place.probability;
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.6g", sum);
+  if (sum > 1 + rounding)
+    throw InputError({.file = file.string()},
+                     "the probabilities of the usual places of " + class_name + " sum to " + text.data(),
+                     "correct the file: they sum to at most 1");
+  if (places.size() > kAnywhere)
+    throw InputError({.file = file.string()},
+                     "it has " + std::to_string(places.size()) + " usual places of " + class_name,
+                     "write at most " + std::to_string(kAnywhere));
+}
+
+}  // namespace
 
 std::vector<rdf::UsualPlace> usualPlacesOf(const rdf::OntologyView& ontology, const std::string& class_iri,
                                            const std::filesystem::path& file) {
   if (file.empty()) return ontology.find(class_iri)->places;
   const QuerySource source = openQuerySource(file);
   const std::string query = "PREFIX clx: <" + std::string(rdf::vocabulary::kClx) +
-                            "> SELECT ?near ?within ?share { ?place clx:usualFor <" + class_iri +
-                            "> ; clx:nearClass ?near ; clx:within ?within ; clx:probability ?share } "
-                            "ORDER BY DESC(?share) ?near ?within";
+                            "> SELECT ?place ?near ?within ?share { ?place clx:usualFor <" + class_iri +
+                            "> OPTIONAL { ?place clx:nearClass ?near } OPTIONAL { ?place clx:within ?within } "
+                            "OPTIONAL { ?place clx:probability ?share } } ORDER BY DESC(?share) ?near ?within ?place";
   const sparql::ResultTable table = sparql::evaluateQuery(source.reader(), query).table;
   std::vector<rdf::UsualPlace> places;
+  std::vector<Diagnostic> faults;
   for (std::size_t row = 0; row < table.row_count; ++row)
-    places.push_back({classNamed(ontology, table.at(row, 0)->text),
-                      std::strtod(table.at(row, 1)->text.c_str(), nullptr),
-                      std::strtod(table.at(row, 2)->text.c_str(), nullptr)});
+    places.push_back(placeInRow(ontology, table, row, file, faults));
+  if (!faults.empty()) throw InputError(std::move(faults));
   if (places.empty())
     throw Error(ErrorKind::InvalidArgument, file.string() + ": no usual place of " + mapping::localName(class_iri) +
                                                 " is in it; learn from maps that hold such objects");
+  checkTogether(places, mapping::localName(class_iri), file);
   return places;
 }
 
@@ -68,13 +145,14 @@ SearchAnswer searchFor(const mapping::MapReader& map, const SearchRequest& reque
   const Eigen::Vector2d from = request.from.empty() ? lastStop(map) : placeNamed(map, request.from);
   const TerrainGrid terrain = terrainOf(map, request.ways.terrain);
   const PassableGrid grid = passableIn(map, terrain, request.ways);
+  const std::vector<bool> is_gone = request.ways.with_gone ? std::vector<bool>(map.objects().size()) : goneAmong(map);
   SearchAnswer answer;
   answer.frame = grid.frame;
-  answer.known = knownOf(map, ontology, class_iri, from);
+  answer.known = knownOf(map, ontology, class_iri, from, is_gone);
   answer.places = usualPlacesOf(ontology, class_iri, request.places);
   const std::vector<PlaceEvidence> places = evidenceOf(map, terrain, ontology, answer.places);
   for (const PlaceEvidence& place : places) answer.reasons.push_back(place.near_class);
-  const SightGrid sight = sightOf(map, terrain, request.search.eye_m);
+  const SightGrid sight = sightOf(map, terrain, leftOut(map, request.ways), request.search.eye_m);
   const SearchField field = fieldOf(grid.frame, knownShare(map, terrain, sight, request.search), places);
   answer.stops = tourOf(grid, sight, field, from, request.search, request.tour);
   return answer;

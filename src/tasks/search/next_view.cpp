@@ -12,18 +12,20 @@ namespace cluxel::tasks {
 
 namespace {
 
-/// Objects of low confidence. Surfaces are left out: nobody looks at them from a stop.
-std::vector<bool> doubtfulAmong(const mapping::MapReader& map, double below) {
+/// Objects of low confidence. Surfaces are left out (nobody looks at them from a stop), and objects that are gone.
+std::vector<bool> doubtfulAmong(const mapping::MapReader& map, double below, const std::vector<bool>& is_left_out) {
   const rdf::OntologyView ontology = ontologyViewOf(map.quads());
   std::vector<bool> is_doubtful;
-  for (const rules::SemanticObject& object : map.objects())
-    is_doubtful.push_back(object.confidence < below &&
-                          !ontology.isA(object.class_iri, rdf::vocabulary::clx("Surface")));
+  for (std::size_t i = 0; i < map.objects().size(); ++i) {
+    const rules::SemanticObject& object = map.objects()[i];
+    const bool is_surface = ontology.isA(object.class_iri, rdf::vocabulary::clx("Surface"));
+    is_doubtful.push_back(object.confidence < below && !is_surface && !is_left_out[i]);
+  }
   return is_doubtful;
 }
 
 SearchField unobservedField(const TerrainGrid& terrain) {
-  SearchField field{terrain.frame, {}, std::vector<std::uint8_t>(terrain.frame.size(), kAnywhere)};
+  SearchField field{terrain.frame, {}, std::vector<PlaceNumber>(terrain.frame.size(), kAnywhere)};
   for (const std::uint8_t seen : terrain.seen) field.probability.push_back(seen != 0 ? 0.0 : 1.0);
   return field;
 }
@@ -34,7 +36,7 @@ SearchField doubtfulField(const mapping::MapReader& map, const TerrainGrid& terr
   for (const std::uint32_t thing : terrain.things)
     if (thing != kUnnamedThing) ++cells[thing];
   SearchField field{terrain.frame, std::vector<double>(terrain.frame.size(), 0.0),
-                    std::vector<std::uint8_t>(terrain.frame.size(), kAnywhere)};
+                    std::vector<PlaceNumber>(terrain.frame.size(), kAnywhere)};
   for (std::uint32_t cell = 0; cell < terrain.frame.size(); ++cell)
     for (const std::uint32_t thing : terrain.thingsIn(cell))
       if (thing != kUnnamedThing && is_doubtful[thing])
@@ -55,8 +57,9 @@ NextViewAnswer nextViews(const mapping::MapReader& map, const NextViewRequest& r
   const PassableGrid grid = passableIn(map, terrain, request.ways);
   SearchParams search;
   search.view_m = request.view_m;
-  const SightGrid sight = sightOf(map, terrain, search.eye_m);
-  std::vector<bool> is_doubtful = doubtfulAmong(map, request.below);
+  const std::vector<bool> is_left_out = leftOut(map, request.ways);
+  const SightGrid sight = sightOf(map, terrain, is_left_out, search.eye_m);
+  std::vector<bool> is_doubtful = doubtfulAmong(map, request.below, is_left_out);
   NextViewAnswer answer;
   answer.frame = grid.frame;
   const double cell_m2 = grid.frame.cell_m * grid.frame.cell_m;
@@ -67,7 +70,7 @@ NextViewAnswer nextViews(const mapping::MapReader& map, const NextViewRequest& r
   std::vector<bool> is_seen(terrain.frame.size(), false);
   for (SearchStop& stop : tourOf(grid, sight, field, from, search, request.tour)) {
     NextView view{std::move(stop), 0, {}};
-    for (const std::uint32_t cell : visibleFrom(sight, view.stop.cell, search.view_m)) {
+    for (const std::uint32_t cell : view.stop.in_sight) {
       if (terrain.seen[cell] == 0 && !is_seen[cell]) view.area_m2 += cell_m2;
       is_seen[cell] = true;
       for (const std::uint32_t thing : terrain.thingsIn(cell))

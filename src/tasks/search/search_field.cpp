@@ -87,9 +87,8 @@ std::vector<float> knownShare(const mapping::MapReader& map, const TerrainGrid& 
     for (std::uint32_t cell = 0; !cloud.has_pose && cell < frame.size(); ++cell)
       if (terrain.seen[cell] != 0) known[cell] = static_cast<float>(params.detection);
     const Eigen::Vector2d stop = cloud.T_map_sensor.translation().head<2>();
-    const auto at = frame.cellAt(stop);
-    if (!cloud.has_pose || !at) continue;
-    for (const std::uint32_t cell : visibleFrom(sight, *at, far_m)) {
+    if (!cloud.has_pose) continue;
+    for (const std::uint32_t cell : visibleFrom(sight, stop, far_m)) {
       const double distance_m = (frame.centreOf(cell) - stop).norm();
       const double share = std::clamp((far_m - distance_m) / std::max(1e-9, far_m - params.view_m), 0.0, 1.0);
       const double here = params.detection * (distance_m <= params.view_m ? 1.0 : share);
@@ -101,7 +100,10 @@ std::vector<float> knownShare(const mapping::MapReader& map, const TerrainGrid& 
 
 SearchField fieldOf(const GridFrame& frame, const std::vector<float>& known, const std::vector<PlaceEvidence>& places) {
   constexpr double rounding = 1e-9;
-  SearchField field{frame, std::vector<double>(frame.size(), 0.0), std::vector<std::uint8_t>(frame.size(), kAnywhere)};
+  if (places.size() > kAnywhere)
+    throw Error(ErrorKind::InvalidArgument, "the class has " + std::to_string(places.size()) +
+                                                " usual places; write at most " + std::to_string(kAnywhere));
+  SearchField field{frame, std::vector<double>(frame.size(), 0.0), std::vector<PlaceNumber>(frame.size(), kAnywhere)};
   std::vector<double> largest_share(frame.size(), 0.0);
   double anywhere = 1;
   for (std::size_t i = 0; i < places.size(); ++i) {
@@ -113,12 +115,13 @@ SearchField fieldOf(const GridFrame& frame, const std::vector<float>& known, con
       field.probability[cell] += share;
       if (share <= largest_share[cell]) continue;
       largest_share[cell] = share;
-      field.reason[cell] = static_cast<std::uint8_t>(i);
+      field.reason[cell] = static_cast<PlaceNumber>(i);
     }
   }
   if (anywhere < -rounding)
     throw Error(ErrorKind::InvalidArgument,
-                "the usual places of the class have probabilities that sum to more than 1; correct the ontology");
+                "the usual places of the class in the ontology have probabilities that sum to more than 1; "
+                "correct the ontology");
   const double rest = std::max(0.0, anywhere) / static_cast<double>(frame.size());
   double sum = 0;
   for (std::uint32_t cell = 0; cell < frame.size(); ++cell) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -25,13 +26,15 @@ struct SearchParams {
   double eye_m = 1.2;      ///< height of the camera: higher obstacles hide what is behind them
 };
 
-/// The number of a place in reasons, or this: anywhere.
-inline constexpr std::uint8_t kAnywhere = 255;
+/// The number of a usual place of the class.
+using PlaceNumber = std::uint16_t;
+/// No place: anywhere.
+inline constexpr PlaceNumber kAnywhere = std::numeric_limits<PlaceNumber>::max();
 
 struct SearchField {
   GridFrame frame;
-  std::vector<double> probability;   ///< that a further object is there; the sum is 1
-  std::vector<std::uint8_t> reason;  ///< the place that says most about the cell, or kAnywhere
+  std::vector<double> probability;  ///< that a further object is there; the sum is 1
+  std::vector<PlaceNumber> reason;  ///< the place that says most about the cell, or kAnywhere
 };
 
 /// The cells that hold something of a class: cells in which such an object stands, the positions of things that
@@ -50,7 +53,8 @@ std::vector<float> knownShare(const mapping::MapReader& map, const TerrainGrid& 
 
 /// The probability of each place is spread evenly over the cells within its distance of the things that are there, the
 /// rest over all cells; then a cell keeps the share that the map does not know. `known`: per cell, as knownShare().
-/// Throws Error (InvalidArgument) for places whose probabilities sum to more than 1.
+/// Throws Error (InvalidArgument) for places whose probabilities sum to more than 1, and for more than kAnywhere
+/// places.
 SearchField fieldOf(const GridFrame& frame, const std::vector<float>& known, const std::vector<PlaceEvidence>& places);
 
 }  // namespace cluxel::tasks

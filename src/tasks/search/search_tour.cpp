@@ -22,7 +22,7 @@ class StopCandidates {
     bound_.assign(cells_.size(), 1.0);
   }
 
-  /// The reachable stop with the highest probability per metre of walk; none when all are below the minimum.
+  /// The reachable stop with the highest probability per metre of walk; none when nothing more comes into sight.
   std::optional<SearchStop> best(const CheapestWays& ways, double total_m, const TourParams& params) {
     std::optional<SearchStop> best;
     double best_value = 0;
@@ -37,11 +37,12 @@ class StopCandidates {
     return best;
   }
 
-  /// Removes what is seen from a stop, and on the way to it, from the field. Records which places it came from.
+  /// Removes what is seen from a stop, and on the way to it, from the field. Records the cells, and which places the
+  /// probability came from.
   void take(SearchStop& stop, const CheapestWays& ways, const TourParams& params) {
-    std::map<std::uint8_t, double> by_reason;
-    for (const std::uint32_t cell :
-         params.looks_on_way ? inSightOnWay(ways, stop.cell) : visibleFrom(sight_, stop.cell, view_m_)) {
+    std::map<PlaceNumber, double> by_reason;
+    stop.in_sight = params.looks_on_way ? inSightOnWay(ways, stop.cell) : visibleFrom(sight_, stop.cell, view_m_);
+    for (const std::uint32_t cell : stop.in_sight) {
       by_reason[field_.reason[cell]] += field_.probability[cell];
       field_.probability[cell] = 0;
     }
@@ -64,14 +65,14 @@ class StopCandidates {
     };
     std::vector<std::size_t> order, found;
     for (std::size_t i = 0; i < cells_.size(); ++i)
-      if (std::isfinite(ways.cost[cells_[i]]) && bound_[i] > 0 && bound_[i] >= params.min_probability &&
+      if (std::isfinite(ways.cost[cells_[i]]) && bound_[i] > 0 &&
           (params.budget_m == 0 || total_m + ways.cost[cells_[i]] <= params.budget_m))
         order.push_back(i);
     std::sort(order.begin(), order.end(), isBetter);
     for (const std::size_t i : order) {
       if (found.size() == wanted && value(i) < value(found.back())) break;
       bound_[i] = sumOver(visibleFrom(sight_, cells_[i], view_m_));
-      if (bound_[i] == 0 || bound_[i] < params.min_probability) continue;
+      if (bound_[i] == 0) continue;
       found.insert(std::upper_bound(found.begin(), found.end(), i, isBetter), i);
       if (found.size() > wanted) found.pop_back();
     }

@@ -14,21 +14,22 @@ namespace cluxel::tasks {
 
 struct SearchStop {
   std::uint32_t cell = 0;
-  double walk_m = 0;                ///< from the stop before, by the cheapest way
-  double total_m = 0;               ///< from the start
-  double probability = 0;           ///< that the object is first seen from here, or on the way here
-  double so_far = 0;                ///< that it is seen from here or before
-  std::uint8_t reason = kAnywhere;  ///< the place that most of the probability comes from
-  std::vector<std::pair<std::uint8_t, double>> shares = {};  ///< of the probability, by place, largest first
-  std::vector<std::uint32_t> way = {};                       ///< cells from the stop before, both included
+  double walk_m = 0;               ///< from the stop before, by the cheapest way
+  double total_m = 0;              ///< from the start
+  double probability = 0;          ///< that the object is first seen from here, or on the way here
+  double so_far = 0;               ///< that it is seen from here or before
+  PlaceNumber reason = kAnywhere;  ///< the place that most of the probability comes from
+  std::vector<std::pair<PlaceNumber, double>> shares = {};  ///< of the probability, by place, largest first
+  std::vector<std::uint32_t> way = {};                      ///< cells from the stop before, both included
+  std::vector<std::uint32_t> in_sight =
+      {};  ///< cells seen from here, or on the way here with `looks_on_way`; ascending
 };
 
 struct TourParams {
   double budget_m = 0;  ///< length of the whole walk; 0: no limit
   std::size_t max_stops = 10;
-  double min_probability = 0.002;  ///< a stop with less ends the tour
-  double settle_m = 5;             ///< what a stop costs beside the walk
-  bool looks_on_way = true;        ///< what is in sight of the way counts too
+  double settle_m = 5;       ///< what a stop costs beside the walk
+  bool looks_on_way = true;  ///< what is in sight of the way counts too
 };
 
 /// Greedy: the next stop is the one with most new probability in sight for each metre of walk and settling. Stops are
@@ -54,13 +55,13 @@ struct KnownObject {
 
 struct SearchAnswer {
   GridFrame frame;
-  std::vector<KnownObject> known;  ///< objects of the class that the map holds, nearest first
+  std::vector<KnownObject> known;  ///< objects of the class that the map holds and that are there, nearest first
   std::vector<SearchStop> stops;
   std::vector<std::string> reasons;     ///< local names of near classes, by SearchStop::reason
   std::vector<rdf::UsualPlace> places;  ///< parallel to reasons
 };
 
-/// Where the sensor stood at last. Throws Error (NotFound) for a map without scans.
+/// Where the sensor stood at last. Throws Error (NotFound) when no scan has a pose, or several have and none a time.
 Eigen::Vector2d lastStop(const mapping::MapReader& map);
 /// The usual places of a class in a Turtle file, as `search learn` writes it; those of the ontology without a file.
 /// Throws Error (InvalidArgument) for a file that says nothing about the class.

@@ -11,59 +11,74 @@ namespace cluxel::tasks {
 
 namespace {
 
-/// Marks the cells that are visible from the middle of a cell, within a square around it.
+constexpr double kFarthestCell = 1e9;  ///< numbers of cells are int
+
+/// Marks the cells that are visible from the middle of a cell, which may lie outside of the grid.
 class SightRays {
  public:
-  SightRays(const SightGrid& sight, std::uint32_t cell, double view_m)
-      : sight_(sight),
-        x_(sight.frame.columnOf(cell)),
-        y_(sight.frame.rowOf(cell)),
-        reach_(static_cast<int>(std::floor(view_m / sight.frame.cell_m))),
-        squared_(view_m * view_m / (sight.frame.cell_m * sight.frame.cell_m) + 1e-9),
-        is_seen_(static_cast<std::size_t>(2 * reach_ + 1) * static_cast<std::size_t>(2 * reach_ + 1), 0) {}
+  SightRays(const SightGrid& sight, int column, int row, double view_m)
+      : sight_(sight), x_(column), y_(row), squared_(view_m * view_m / cellSquared() + 1e-9) {
+    const GridFrame& frame = sight.frame;
+    const int farthest =
+        std::max({std::abs(x_), std::abs(frame.columns - 1 - x_), std::abs(y_), std::abs(frame.rows - 1 - y_)});
+    reach_ = static_cast<int>(std::min<double>(farthest, std::floor(view_m / frame.cell_m)));
+    low_x_ = std::max(0, x_ - reach_), low_y_ = std::max(0, y_ - reach_);
+    width_ = std::max(0, std::min(frame.columns - 1, x_ + reach_) - low_x_ + 1);
+    height_ = std::max(0, std::min(frame.rows - 1, y_ + reach_) - low_y_ + 1);
+    is_seen_.assign(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_), 0);
+  }
 
   std::vector<std::uint32_t> cells() {
-    mark(0, 0);
+    if (is_seen_.empty()) return {};
+    goesOn(0, 0);
     for (int along = -reach_; along <= reach_; ++along)
       for (const auto& [dx, dy] :
            {std::pair(reach_, along), std::pair(-reach_, along), std::pair(along, reach_), std::pair(along, -reach_)})
         castRay(dx, dy);
     std::vector<std::uint32_t> found;
-    for (int dy = -reach_; dy <= reach_; ++dy)
-      for (int dx = -reach_; dx <= reach_; ++dx)
-        if (is_seen_[slotOf(dx, dy)] != 0) found.push_back(sight_.frame.index(x_ + dx, y_ + dy));
+    for (int y = 0; y < height_; ++y)
+      for (int x = 0; x < width_; ++x)
+        if (is_seen_[slotOf(low_x_ + x, low_y_ + y)] != 0) found.push_back(sight_.frame.index(low_x_ + x, low_y_ + y));
     return found;
   }
 
  private:
-  std::size_t slotOf(int dx, int dy) const {
-    return static_cast<std::size_t>((dy + reach_) * (2 * reach_ + 1) + dx + reach_);
+  double cellSquared() const { return sight_.frame.cell_m * sight_.frame.cell_m; }
+  std::size_t slotOf(int x, int y) const {
+    return static_cast<std::size_t>(y - low_y_) * static_cast<std::size_t>(width_) +
+           static_cast<std::size_t>(x - low_x_);
   }
-  /// False when the ray ends here.
-  bool mark(int dx, int dy) {
-    if (!sight_.frame.holds(x_ + dx, y_ + dy) || dx * dx + dy * dy > squared_) return false;
-    is_seen_[slotOf(dx, dy)] = 1;
+  /// Marks the cell, if it is one of the grid. False when the ray ends here.
+  bool goesOn(int dx, int dy) {
+    const double distance_squared = static_cast<double>(dx) * dx + static_cast<double>(dy) * dy;
+    if (distance_squared > squared_) return false;
+    if (!sight_.frame.holds(x_ + dx, y_ + dy)) return !sight_.frame.holds(x_, y_);  // it may still come to the grid
+    is_seen_[slotOf(x_ + dx, y_ + dy)] = 1;
     return (dx == 0 && dy == 0) || sight_.opaque[sight_.frame.index(x_ + dx, y_ + dy)] == 0;
   }
   void castRay(int dx, int dy) {
     for (int i = 1; i <= reach_; ++i) {
       const double share = static_cast<double>(i) / reach_;
-      if (!mark(static_cast<int>(std::lround(dx * share)), static_cast<int>(std::lround(dy * share)))) return;
+      if (!goesOn(static_cast<int>(std::lround(dx * share)), static_cast<int>(std::lround(dy * share)))) return;
     }
   }
 
   const SightGrid& sight_;
-  int x_, y_, reach_;
+  int x_, y_;
   double squared_;
+  int reach_ = 0;
+  int low_x_ = 0, low_y_ = 0, width_ = 0, height_ = 0;  ///< the part of the grid that may be seen
   std::vector<std::uint8_t> is_seen_;
 };
 
 }  // namespace
 
-SightGrid sightOf(const mapping::MapReader& map, const TerrainGrid& terrain, double eye_m) {
+SightGrid sightOf(const mapping::MapReader& map, const TerrainGrid& terrain, const std::vector<bool>& is_left_out,
+                  double eye_m) {
   std::vector<bool> is_high;
-  for (const rules::SemanticObject& object : map.objects())
-    is_high.push_back(mapping::geometryOf(map.scene().cluxels, mapping::cluxelsOf(object)).top_m >= eye_m);
+  for (std::size_t i = 0; i < map.objects().size(); ++i)
+    is_high.push_back(!is_left_out[i] &&
+                      mapping::geometryOf(map.scene().cluxels, mapping::cluxelsOf(map.objects()[i])).top_m >= eye_m);
   SightGrid sight{terrain.frame, std::vector<std::uint8_t>(terrain.frame.size(), 0)};
   for (std::uint32_t cell = 0; cell < terrain.frame.size(); ++cell)
     for (const std::uint32_t thing : terrain.thingsIn(cell))
@@ -72,7 +87,17 @@ SightGrid sightOf(const mapping::MapReader& map, const TerrainGrid& terrain, dou
 }
 
 std::vector<std::uint32_t> visibleFrom(const SightGrid& sight, std::uint32_t cell, double view_m) {
-  return SightRays(sight, cell, view_m).cells();
+  return SightRays(sight, sight.frame.columnOf(cell), sight.frame.rowOf(cell), view_m).cells();
+}
+
+std::vector<std::uint32_t> visibleFrom(const SightGrid& sight, const Eigen::Vector2d& p_map, double view_m) {
+  const GridFrame& frame = sight.frame;
+  const double column = std::floor((p_map.x() - frame.min_x) / frame.cell_m);
+  const double row = std::floor((p_map.y() - frame.min_y) / frame.cell_m);
+  const double reach = view_m / frame.cell_m + 1;
+  const bool is_near = column >= -reach && row >= -reach && column < frame.columns + reach && row < frame.rows + reach;
+  if (!is_near || std::max(std::abs(column), std::abs(row)) > kFarthestCell) return {};
+  return SightRays(sight, static_cast<int>(column), static_cast<int>(row), view_m).cells();
 }
 
 }  // namespace cluxel::tasks

@@ -11,14 +11,13 @@ namespace {
 
 constexpr char kFree = static_cast<char>(254), kOccupied = 0, kUnknown = static_cast<char>(205);
 
-bool isBesideStep(const PassableGrid& grid, std::uint32_t cell) {
-  const int x = grid.frame.columnOf(cell), y = grid.frame.rowOf(cell);
-  for (const auto& [dx, dy] : {std::pair(1, 0), std::pair(-1, 0), std::pair(0, 1), std::pair(0, -1)}) {
-    if (!grid.frame.holds(x + dx, y + dy)) continue;
-    const std::uint32_t other = grid.frame.index(x + dx, y + dy);
-    if (grid.closure[other] != Closure::Unobserved && !grid.isStepOpen(cell, other)) return true;
+std::string quoted(const std::string& text) {
+  std::string quoted = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') quoted += '\\';
+    quoted += c;
   }
-  return false;
+  return quoted + '"';
 }
 
 char greyOf(const PassableGrid& grid, std::uint32_t cell) {
@@ -28,6 +27,16 @@ char greyOf(const PassableGrid& grid, std::uint32_t cell) {
 }
 
 }  // namespace
+
+bool isBesideStep(const PassableGrid& grid, std::uint32_t cell) {
+  const int x = grid.frame.columnOf(cell), y = grid.frame.rowOf(cell);
+  for (const auto& [dx, dy] : {std::pair(1, 0), std::pair(-1, 0), std::pair(0, 1), std::pair(0, -1)}) {
+    if (!grid.frame.holds(x + dx, y + dy)) continue;
+    const std::uint32_t other = grid.frame.index(x + dx, y + dy);
+    if (grid.closure[other] != Closure::Unobserved && !grid.isStepOpen(cell, other)) return true;
+  }
+  return false;
+}
 
 CostMap costMapOf(const PassableGrid& grid, const std::string& image_name) {
   const GridFrame& frame = grid.frame;
@@ -41,7 +50,7 @@ CostMap costMapOf(const PassableGrid& grid, const std::string& image_name) {
       "resolution: %g\norigin: [%.3f, %.3f, 0.0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\nmode: "
       "trinary\n",
       frame.cell_m, frame.min_x, frame.min_y);
-  map.yaml = "image: \"" + image_name + "\"\n" + text.data();
+  map.yaml = "image: " + quoted(image_name) + "\n" + text.data();
   return map;
 }
 

@@ -13,6 +13,9 @@ struct CostMap {
   std::string yaml;   ///< names the image, its resolution and the place of its lower left corner
 };
 
+/// Whether a step that is too high lies between the cell and one beside it.
+bool isBesideStep(const PassableGrid& grid, std::uint32_t cell);
+
 /// Occupied are cells with things, too steep ones, and both sides of a step that is too high. `image_name`: how the
 /// YAML file names the image.
 CostMap costMapOf(const PassableGrid& grid, const std::string& image_name);

@@ -162,7 +162,8 @@ std::vector<double> walkLengths(const PassableGrid& grid, const Eigen::Vector2d&
   return length;
 }
 
-std::vector<ReachedObject> objectsWithin(const TerrainGrid& terrain, const std::vector<double>& walk_m) {
+std::vector<ReachedObject> objectsWithin(const TerrainGrid& terrain, const std::vector<double>& walk_m,
+                                         const std::vector<bool>& is_left_out) {
   constexpr double beside_m = 1;
   const GridFrame& frame = terrain.frame;
   const int reach = static_cast<int>(std::ceil(beside_m / frame.cell_m));
@@ -173,11 +174,12 @@ std::vector<ReachedObject> objectsWithin(const TerrainGrid& terrain, const std::
     for (int dy = -reach; dy <= reach; ++dy)
       for (int dx = -reach; dx <= reach; ++dx) {
         const int x = frame.columnOf(cell) + dx, y = frame.rowOf(cell) + dy;
-        if (frame.holds(x, y)) best_m = std::min(best_m, walk_m[frame.index(x, y)]);
+        const bool is_beside = std::hypot(dx, dy) * frame.cell_m <= beside_m;
+        if (is_beside && frame.holds(x, y)) best_m = std::min(best_m, walk_m[frame.index(x, y)]);
       }
     if (!std::isfinite(best_m)) continue;
     for (const std::uint32_t thing : terrain.thingsIn(cell)) {
-      if (thing == kUnnamedThing) continue;
+      if (thing == kUnnamedThing || is_left_out[thing]) continue;
       const auto place = shortest.emplace(thing, best_m).first;
       place->second = std::min(place->second, best_m);
     }

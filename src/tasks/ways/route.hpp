@@ -21,6 +21,11 @@ struct WayRequest {
   std::string near;                  ///< the way should stay near objects of this class; empty: none
 };
 
+/// Per object: whether later scans saw through its place (clx:seenThrough).
+std::vector<bool> goneAmong(const mapping::MapReader& map);
+/// Per object: whether the request leaves it out. Throws as passableIn().
+std::vector<bool> leftOut(const mapping::MapReader& map, const WayRequest& request);
+
 /// Throws Error (NotFound) for a class that the map's ontology does not know.
 PassableGrid passableIn(const mapping::MapReader& map, const WayRequest& request);
 /// The same with a terrain that is there already.
@@ -46,7 +51,7 @@ struct Route {
   double narrowest_m = 0;     ///< free width at the narrowest place; infinite without things
 };
 
-/// A stretch of closed cells on the way that crosses the fewest of them.
+/// A stretch of closed cells on the way that is cheapest where each closed cell, and each step, costs 100.
 struct Barrier {
   enum class Kind : std::uint8_t { Unobserved, Obstacle, TooSteep, TooNarrow, Step };
   Kind kind = Kind::Obstacle;
@@ -69,11 +74,13 @@ RouteAnswer findRoutes(const PassableGrid& grid, const Eigen::Vector2d& from, co
 /// The cells within a walk of `reach_m`, with the length of the shortest walk; infinite beyond.
 std::vector<double> walkLengths(const PassableGrid& grid, const Eigen::Vector2d& from, double reach_m);
 
-/// Objects within reach: a cell of theirs or beside them is. By length of the walk.
+/// Objects within reach: the middle of a cell of theirs lies within a metre of that of a cell within the walk. By
+/// length of the walk.
 struct ReachedObject {
   std::uint32_t object = 0;
   double walk_m = 0;
 };
-std::vector<ReachedObject> objectsWithin(const TerrainGrid& terrain, const std::vector<double>& walk_m);
+std::vector<ReachedObject> objectsWithin(const TerrainGrid& terrain, const std::vector<double>& walk_m,
+                                         const std::vector<bool>& is_left_out);
 
 }  // namespace cluxel::tasks

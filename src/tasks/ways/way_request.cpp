@@ -39,19 +39,6 @@ class ObjectSelector {
   rdf::OntologyView ontology_;
 };
 
-/// Marks the objects of which the map says that later scans saw through their place.
-void markGone(const mapping::MapReader& map, std::vector<bool>& marked) {
-  const rdf::QuadReader& quads = map.quads();
-  rdf::QuadPattern pattern;
-  pattern.p = quads.idOf(Term::iri(rdf::vocabulary::clx("seenThrough")));
-  if (!pattern.p) return;
-  for (std::size_t i = 0; i < map.objects().size(); ++i) {
-    pattern.s = quads.idOf(Term::iri(rdf::iriOfObject(map.objects()[i].id)));
-    rdf::QuadIds quad;
-    if (pattern.s && quads.scan(pattern).next(quad)) marked[i] = true;
-  }
-}
-
 std::optional<double> finiteNumber(std::string_view text) {
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -111,20 +98,40 @@ std::string classNamed(const rdf::OntologyView& ontology, const std::string& wri
               "the map's ontology has no class '" + std::string(name) + "'" + (hint.empty() ? "" : "; " + hint));
 }
 
+std::vector<bool> goneAmong(const mapping::MapReader& map) {
+  std::vector<bool> is_gone(map.objects().size(), false);
+  const rdf::QuadReader& quads = map.quads();
+  rdf::QuadPattern pattern;
+  pattern.p = quads.idOf(Term::iri(rdf::vocabulary::clx("seenThrough")));
+  if (!pattern.p) return is_gone;
+  for (std::size_t i = 0; i < map.objects().size(); ++i) {
+    pattern.s = quads.idOf(Term::iri(rdf::iriOfObject(map.objects()[i].id)));
+    rdf::QuadIds quad;
+    is_gone[i] = pattern.s && quads.scan(pattern).next(quad);
+  }
+  return is_gone;
+}
+
+std::vector<bool> leftOut(const mapping::MapReader& map, const WayRequest& request) {
+  std::vector<bool> is_left_out(map.objects().size(), false);
+  if (!request.with_gone) is_left_out = goneAmong(map);
+  if (request.without.empty()) return is_left_out;
+  const ObjectSelector selector(map);
+  for (const std::string& name : request.without) selector.mark(name, is_left_out);
+  return is_left_out;
+}
+
 PassableGrid passableIn(const mapping::MapReader& map, const WayRequest& request) {
   return passableIn(map, terrainOf(map, request.terrain), request);
 }
 
 PassableGrid passableIn(const mapping::MapReader& map, const TerrainGrid& terrain, const WayRequest& request) {
-  const ObjectSelector selector(map);
-  std::vector<bool> is_left_out(map.objects().size(), false), near;
-  for (const std::string& name : request.without) selector.mark(name, is_left_out);
-  if (!request.with_gone) markGone(map, is_left_out);
+  std::vector<bool> near;
   if (!request.near.empty()) {
     near.assign(map.objects().size(), false);
-    selector.mark(request.near, near);
+    ObjectSelector(map).mark(request.near, near);
   }
-  return passableOf(terrain, request.params, is_left_out, near);
+  return passableOf(terrain, request.params, leftOut(map, request), near);
 }
 
 Eigen::Vector2d placeNamed(const mapping::MapReader& map, const std::string& text) {
@@ -136,7 +143,12 @@ Eigen::Vector2d placeNamed(const mapping::MapReader& map, const std::string& tex
     if (x && y) return {*x, *y};
     throw Error(ErrorKind::InvalidArgument, "'" + text + "': write a place as X,Y in metres of the map frame");
   }
-  const std::string digits = text.substr(text.rfind('/') == std::string::npos ? 0 : text.rfind('/') + 1);
+  const bool is_bracketed = text.starts_with('<') && text.ends_with('>');
+  const std::string name = is_bracketed ? text.substr(1, text.size() - 2) : text;
+  const std::size_t slash = name.rfind('/');
+  const std::string path = slash == std::string::npos ? std::string() : name.substr(0, slash + 1);
+  const bool is_of_object = path.empty() || path == "object/" || path == rdf::mapIri("object", "");
+  const std::string digits = is_of_object ? name.substr(path.size()) : std::string();
   std::vector<std::string> found;
   for (std::size_t i = 0; i < map.objects().size(); ++i) {
     const ContentHash& id = map.objects()[i].id;

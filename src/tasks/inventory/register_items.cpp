@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+// Collects the things of a map that a register is compared with.
+#include <map>
+#include <tuple>
+
+#include "mapping/map_reader.hpp"
+#include "rdf/map_iris.hpp"
+#include "rdf/vocabulary.hpp"
+#include "sparql/query_engine.hpp"
+#include "tasks/inventory/register.hpp"
+#include "tasks/ways/route.hpp"
+
+namespace cluxel::tasks {
+
+namespace {
+
+/// Things without doubles. A row has no IRI; its place stands for it.
+class RegisterThings {
+ public:
+  RegisterItem& add(InventoryItem thing) {
+    const auto [place, is_new] = numbers_.try_emplace(
+        thing.object.empty() ? std::tuple(thing.kind, thing.at.x(), thing.at.y()) : keyOf(thing.object), items_.size());
+    if (is_new) items_.push_back({.thing = std::move(thing)});
+    return items_[place->second];
+  }
+  RegisterItem* find(const std::string& iri) {
+    const auto place = numbers_.find(keyOf(iri));
+    return place == numbers_.end() ? nullptr : &items_[place->second];
+  }
+  std::vector<RegisterItem> take() { return std::move(items_); }
+
+ private:
+  using Key = std::tuple<std::string, double, double>;
+  static Key keyOf(const std::string& iri) { return {iri, 0, 0}; }
+
+  std::vector<RegisterItem> items_;
+  std::map<Key, std::size_t> numbers_;
+};
+
+/// What the map says is of a class, with its place; a place of derived things that has none is where its members are.
+/// Without parking rows: those are in the inventory.
+std::vector<InventoryItem> thingsTyped(const mapping::MapReader& map, const std::string& class_iri) {
+  const std::string query = "PREFIX clx: <" + std::string(rdf::vocabulary::kClx) +
+                            "> SELECT ?thing (AVG(?px) AS ?x) (AVG(?py) AS ?y) { ?thing a <" + class_iri +
+                            "> FILTER NOT EXISTS { ?thing a clx:ParkingRow } "
+                            "{ ?thing clx:x ?px ; clx:y ?py } UNION { ?thing clx:hasMember ?m . "
+                            "?m clx:x ?px ; clx:y ?py FILTER NOT EXISTS { ?thing clx:x ?own } } } "
+                            "GROUP BY ?thing ORDER BY ?thing";
+  const sparql::ResultTable table = sparql::evaluateQuery(map.quads(), query).table;
+  std::vector<InventoryItem> found;
+  for (std::size_t row = 0; row < table.row_count; ++row) {
+    if (table.at(row, 1) == nullptr || table.at(row, 2) == nullptr) continue;
+    const auto number = [&](std::size_t column) { return std::stod(table.at(row, column)->text); };
+    InventoryItem& item = found.emplace_back();
+    item.kind = mapping::localName(class_iri);
+    item.class_iri = class_iri;
+    item.object = table.at(row, 0)->text;
+    item.at = {number(1), number(2)};
+  }
+  return found;
+}
+
+}  // namespace
+
+std::vector<RegisterItem> registerItems(const mapping::MapReader& map, const InventoryParams& params,
+                                        const std::vector<RegisterEntry>& entries) {
+  const rdf::OntologyView ontology = ontologyViewOf(map.quads());
+  std::map<std::string, std::size_t> object_named;
+  const std::vector<bool> is_gone = goneAmong(map);
+  for (std::size_t i = 0; i < is_gone.size(); ++i) object_named[rdf::iriOfObject(map.objects()[i].id)] = i;
+  std::set<std::string> classes;
+  for (const RegisterEntry& entry : entries) classes.insert(entry.class_iri);
+  RegisterThings things;
+  for (InventoryItem& item : inventoryOf(map, params)) things.add(std::move(item)).is_listed = true;
+  for (const std::string& class_iri : classes) {
+    InventoryParams of_class{.classes = {class_iri}};
+    of_class.with_rows = ontology.isA(rdf::vocabulary::clx("ParkingRow"), class_iri);
+    of_class.with_sidewalks = ontology.isA(rdf::vocabulary::clx("Sidewalk"), class_iri);
+    for (InventoryItem& item : inventoryOf(map, of_class)) things.add(std::move(item)).classes.insert(class_iri);
+    for (InventoryItem& item : thingsTyped(map, class_iri)) {
+      const auto object = object_named.find(item.object);
+      if (object != object_named.end() && is_gone[object->second]) continue;
+      RegisterItem* known = things.find(item.object);
+      if (known == nullptr)
+        known = &things.add(object == object_named.end() ? std::move(item)
+                                                         : measuredItem(map, map.objects()[object->second]));
+      known->classes.insert(class_iri);
+    }
+  }
+  return things.take();
+}
+
+}  // namespace cluxel::tasks
