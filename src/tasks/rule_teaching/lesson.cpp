@@ -6,9 +6,12 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <tuple>
 
 #include "cluxel/error.hpp"
 #include "mapping/facts/ask_replay.hpp"
+#include "mapping/facts/object_geometry.hpp"
+#include "mapping/statements/stated_values.hpp"
 #include "rules/decide/reason.hpp"
 #include "rules/language/rule_loader.hpp"
 #include "tasks/explanation.hpp"
@@ -27,6 +30,13 @@ class Teaching {
     rules_ = rulesForMap(map, "rules.yaml", includingText(map, ""));
     lesson_.object = objectNamed(map, request.object);
     lesson_.class_iri = classNamed(rules_, request.class_name);
+    mapping::Statement is_class;
+    is_class.value = Term::iri(lesson_.class_iri);
+    mapping::requireStatable(is_class, rules_.catalogue);
+    for (const rules::SemanticObject& other : map.objects())
+      if (other.is_class_wide && other.class_iri == lesson_.class_iri)
+        throw Error(ErrorKind::InvalidArgument, mapping::localName(lesson_.class_iri) +
+                                                    " is one object of the whole map, to which no thing can be added");
     lesson_.rule_file = request.rule_file;
   }
 
@@ -40,6 +50,7 @@ class Teaching {
     lesson.rules = rulesThatTakeTheCase();
     lesson.guarded = lesson_.guarded;
     lesson.test = testText(map_, rules_, lesson_);
+    std::tie(lesson.points, lesson.kept_points) = keptPoints();
     lesson.difference = trialOf(map_, rulesForMap(map_, request_.rule_file, lesson.rules));
     return lesson;
   }
@@ -128,12 +139,30 @@ class Teaching {
     return best;
   }
 
+  /// Points of the object, and those of them that objects of the class have with the lesson.
+  std::pair<double, double> keptPoints() const {
+    const perception::SceneCluxels& cluxels = map_.scene().cluxels;
+    std::set<std::uint32_t> of_class;
+    for (const rules::SemanticObject& made : taught_)
+      if (made.class_iri == lesson_.class_iri)
+        for (const std::uint32_t cluxel : mapping::cluxelsOf(made)) of_class.insert(cluxel);
+    double all = 0, kept = 0;
+    for (const std::uint32_t cluxel : mapping::cluxelsOf(object())) {
+      all += cluxels.point_count[cluxel];
+      if (of_class.contains(cluxel)) kept += cluxels.point_count[cluxel];
+    }
+    return {all, kept};
+  }
+
   std::string rulesThatTakeTheCase() {
     while (true) {
       std::string text = ruleText(map_, rules_, lesson_);
       const rules::ReasoningResult result = resultOf(rulesForMap(map_, request_.rule_file, text));
       const rules::SemanticObject* taker = takerIn(result);
-      if (taker != nullptr && taker->rule_id == lesson_.rule_id) return text;
+      if (taker != nullptr && taker->rule_id == lesson_.rule_id) {
+        taught_ = result.objects;
+        return text;
+      }
       const std::string wants = taker == nullptr ? "no rule" : result.decisions[taker->decision].rule_id;
       const bool again = std::find(lesson_.guarded.begin(), lesson_.guarded.end(), wants) != lesson_.guarded.end();
       if (taker == nullptr || again || lesson_.guarded.size() == kMostGuards)
@@ -147,12 +176,19 @@ class Teaching {
   const LessonRequest& request_;
   rules::RuleSet rules_;
   LessonCase lesson_;
+  std::vector<rules::SemanticObject> taught_;  ///< objects with the lesson
 };
 
 }  // namespace
 
+bool Lesson::takesTheObject() const {
+  constexpr double kNearlyAll = 0.9;  // what it was joined with may go to what stands beside it
+  return kept_points >= kNearlyAll * points;
+}
+
 bool Lesson::changesNothingElse() const {
-  return difference.changes.size() == 1 && difference.changes.front().kind == ObjectChangeKind::Class &&
+  return takesTheObject() && difference.changes.size() == 1 &&
+         difference.changes.front().kind == ObjectChangeKind::Class &&
          difference.changes.front().after->class_name == class_name;
 }
 
@@ -166,7 +202,14 @@ std::string textOf(const Lesson& lesson) {
     text += (&condition == &lesson.conditions.front() ? " " : " and ") + condition;
   text += lesson.conditions.empty() ? " its label\n" : "\n";
   for (const std::string& rule : lesson.guarded) text += "rule " + rule + " leaves it alone\n";
-  text += lesson.changesNothingElse() ? "nothing else changes\n" : "other things change too\n";
+  if (!lesson.takesTheObject())
+    text += "of the " + std::to_string(static_cast<std::size_t>(lesson.points)) + " points of the object only " +
+            std::to_string(static_cast<std::size_t>(lesson.kept_points)) + " belong to " +
+            rules::withArticle(lesson.class_name) + " then: the rule takes what it was made from first\n";
+  if (lesson.changesNothingElse())
+    text += "nothing else changes\n";
+  else if (lesson.difference.changes.size() > 1)
+    text += "other things change too\n";
   return text + textOf(lesson.difference);
 }
 
@@ -175,6 +218,8 @@ std::string jsonOf(const Lesson& lesson) {
                                     {"before", lesson.before},
                                     {"conditions", lesson.conditions},
                                     {"guarded_rules", lesson.guarded},
+                                    {"points", lesson.points},
+                                    {"kept_points", lesson.kept_points},
                                     {"changes_nothing_else", lesson.changesNothingElse()},
                                     {"difference", nlohmann::ordered_json::parse(jsonOf(lesson.difference))}};
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace);

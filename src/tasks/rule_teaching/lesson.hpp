@@ -26,15 +26,19 @@ struct Lesson {
   std::string test;                     ///< text of a rule test file with the case
   RuleDifference difference;            ///< against the map's own rules
 
-  /// The object has the class, and nothing else differs.
+  double points = 0, kept_points = 0;  ///< of the object, and of these what objects of the class have then
+
+  /// Whether the object has the class with nearly all of its points.
+  bool takesTheObject() const;
+  /// It does, and nothing else differs.
   bool changesNothingElse() const;
 };
 
 /// The smallest readable exception: one test of the attributes of the object's seeds, or two, that no other primitive
 /// of the same label passes; if there is none, that no primitive of another (confirmed) object passes. Throws Error
 /// (NotFound) for an unknown object or class, and Error (InvalidArgument) when the object has the class already, was
-/// made of slices, or no two tests single it out. Cost: one run of the reasoning stage for each rule that must leave
-/// the case alone, and two more.
+/// made of slices, or no two tests single it out, and for a class of parts or of a whole map. Cost: one run of the
+/// reasoning stage for each rule that must leave the case alone, and two more.
 Lesson teach(const mapping::MapReader& map, const LessonRequest& request);
 
 /// What was taught and what it changes.
