@@ -21,7 +21,9 @@ constexpr double kLongest_m = 20'000;  ///< a walk that finds nothing ends
 }  // namespace
 
 Walker::Walker(const SearchWorld& world, bool knows_ground)
-    : world_(world), belief_(world.belief()), sight_(sightOf(world.map(), world.terrain(), world.params().eye_m)) {
+    : world_(world),
+      belief_(world.belief()),
+      sight_(sightOf(world.map(), world.terrain(), tasks::goneAmong(world.map()), world.params().eye_m)) {
   nearest_.assign(world.frame().size(), std::numeric_limits<float>::infinity());
   is_found_.assign(world.targets().size(), false);
   wanted_ = static_cast<std::size_t>(std::ceil(0.8 * static_cast<double>(world.targets().size()) - 1e-9));
@@ -159,7 +161,6 @@ double searchLength(const SearchWorld& world, const std::vector<rdf::UsualPlace>
                                      evidenceOf(world.map(), terrain, ontology, places));
   tasks::TourParams tour;
   tour.max_stops = 1;
-  tour.min_probability = 0;
   while (!walker.isDone()) {
     for (const std::uint32_t cell : walker.takeSeen()) field.probability[cell] *= missed;
     const auto stops =

@@ -4,8 +4,10 @@
 
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <optional>
+#include <type_traits>
 
 #include "bindings.hpp"
 
@@ -16,10 +18,14 @@ namespace {
 template <typename Number>
 std::optional<Number> numberOf(const std::string& text) {
   Number value{};
-  const char* const begin = text.data() + (text.starts_with('+') ? 1 : 0);
+  const bool has_plus = text.starts_with('+') && !text.starts_with("+-");
+  const char* const begin = text.data() + (has_plus ? 1 : 0);
   const char* const end = text.data() + text.size();
   const auto [stop, error] = std::from_chars(begin, end, value);
-  return error == std::errc() && stop == end ? std::optional(value) : std::nullopt;
+  if (stop != end) return std::nullopt;
+  if constexpr (std::is_floating_point_v<Number>)  // infinite or 0, as the datatype has it
+    if (error == std::errc::result_out_of_range) return std::strtod(begin, nullptr);
+  return error == std::errc() ? std::optional(value) : std::nullopt;
 }
 
 std::optional<double> numberOf(const Term* term) {

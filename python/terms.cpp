@@ -66,6 +66,12 @@ bool isNumberType(const std::string& datatype) {
   return isIntegerType(datatype) || isLocalXsd(datatype, names);
 }
 
+/// Python reads more than XML Schema: blanks, "1_000" and "infinity".
+bool isNumberText(const std::string& text) {
+  return text.find_first_not_of("0123456789+-.eE") == std::string::npos || text == "INF" || text == "-INF" ||
+         text == "NaN";
+}
+
 Term termOf(const py::handle& value) {
   if (py::isinstance<Term>(value)) return value.cast<Term>();
   if (py::isinstance<py::bool_>(value)) return Term::boolean(value.cast<bool>());
@@ -82,13 +88,14 @@ py::object valueOf(const Term& term) {
   if (term.kind == TermKind::Literal) {
     PyObject* number = nullptr;
     const py::str text(term.text);
-    if (isIntegerType(term.datatype))
-      number = PyLong_FromUnicodeObject(text.ptr(), 10);
-    else if (isNumberType(term.datatype))
-      number = PyFloat_FromString(text.ptr());
+    if (isNumberType(term.datatype) && isNumberText(term.text))
+      number = isIntegerType(term.datatype) ? PyLong_FromUnicodeObject(text.ptr(), 10) : PyFloat_FromString(text.ptr());
     if (number != nullptr) return py::reinterpret_steal<py::object>(number);
     PyErr_Clear();  // an ill-typed literal keeps its text
-    if (isLocalXsd(term.datatype, {"boolean"})) return py::bool_(term.text == "true" || term.text == "1");
+    if (isLocalXsd(term.datatype, {"boolean"})) {
+      if (term.text == "true" || term.text == "1") return py::bool_(true);
+      if (term.text == "false" || term.text == "0") return py::bool_(false);
+    }
   }
   return py::str(term.text);
 }

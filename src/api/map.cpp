@@ -2,6 +2,7 @@
 // The facade over mapping, SPARQL and tasks: opens the newest state for each call and hands values out.
 #include "cluxel/map.hpp"
 
+#include <algorithm>
 #include <mutex>
 #include <thread>
 
@@ -17,6 +18,7 @@
 #include "mapping/change/map_update.hpp"
 #include "mapping/newest_map.hpp"
 #include "sparql/query_engine.hpp"
+#include "sparql/syntax/parser.hpp"
 #include "tasks/explanation.hpp"
 
 namespace cluxel {
@@ -102,6 +104,30 @@ MapSummary Map::summary() const {
   return summary;
 }
 
+namespace {
+
+/// Throws Error (InvalidArgument) for a variable that the query does not have.
+std::vector<std::string> boundVariables(const std::vector<sparql::Binding>& bindings, std::string_view text,
+                                        const sparql::QueryOptions& options) {
+  std::vector<std::string> names;
+  if (bindings.empty()) return names;
+  sparql::SparqlParseOptions parsing;
+  parsing.file = options.source_name;
+  parsing.prefixes = options.prefixes;
+  const sparql::ast::VariableTable variables = sparql::parseQuery(text, parsing).variables;
+  for (const sparql::Binding& binding : bindings) {
+    const bool is_there = std::any_of(variables.begin(), variables.end(),
+                                      [&](const auto& one) { return !one.hidden && one.name == binding.first; });
+    if (!is_there)
+      throw Error(ErrorKind::InvalidArgument,
+                  "the query has no variable '" + binding.first + "' to be bound; write names without '?'");
+    names.push_back(binding.first);
+  }
+  return names;
+}
+
+}  // namespace
+
 Answer Map::query(std::string_view text, const QueryOptions& options) const {
   const rdf::QuadReader reader = impl_->newestQuads();
   sparql::QueryOptions engine;
@@ -113,8 +139,7 @@ Answer Map::query(std::string_view text, const QueryOptions& options) const {
   engine.budget.max_memory_bytes = options.max_memory_bytes;
   engine.budget.poll = options.poll;
   const std::vector<sparql::Binding> bindings(options.bindings.begin(), options.bindings.end());
-  std::vector<std::string> names;
-  for (const sparql::Binding& binding : bindings) names.push_back(binding.first);
+  const std::vector<std::string> names = boundVariables(bindings, text, engine);
   auto data = std::make_shared<Answer::Data>();
   sparql::PreparedQuery prepared(reader, text, engine, names);
   data->result = prepared.evaluate(bindings);

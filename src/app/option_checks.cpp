@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <limits>
 #include <optional>
+#include <set>
 
 #include "app/console/usage_fault.hpp"
 #include "base/utf8.hpp"
@@ -16,6 +17,11 @@
 namespace cluxel::app {
 
 namespace {
+
+std::set<const CLI::Option*>& optionsThatMayBeEmpty() {
+  static std::set<const CLI::Option*> options;
+  return options;
+}
 
 constexpr std::uint64_t kLargestWhole = std::numeric_limits<std::uint64_t>::max();
 
@@ -124,11 +130,15 @@ CLI::Validator named() {
   return {fault, "NAME", "named"};
 }
 
+void mayBeEmpty(const CLI::Option& option) {
+  optionsThatMayBeEmpty().insert(&option);
+}
+
 void refuseEmptyValues(CLI::App& program) {
   const CLI::Validator filled(
       [](std::string& text) { return text.empty() ? std::string("the value is empty") : std::string(); }, "", "filled");
   for (CLI::Option* option : program.get_options([](CLI::Option*) { return true; }))
-    if (option->get_expected_max() > 0) option->check(filled);
+    if (option->get_expected_max() > 0 && !optionsThatMayBeEmpty().contains(option)) option->check(filled);
   for (CLI::App* command : program.get_subcommands([](CLI::App*) { return true; })) refuseEmptyValues(*command);
 }
 

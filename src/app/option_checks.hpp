@@ -60,6 +60,8 @@ CLI::Validator wordFor(const std::map<std::string, Enum>& values, const std::str
 CLI::Validator named();
 /// The same for all options and arguments of a program and its commands, after their other checks.
 void refuseEmptyValues(CLI::App& program);
+/// The option means something when it is empty; refuseEmptyValues() leaves it alone.
+void mayBeEmpty(const CLI::Option& option);
 /// For texts that go into a map.
 CLI::Validator validText();
 

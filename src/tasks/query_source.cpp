@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <optional>
+#include <set>
 #include <sstream>
 #include <string_view>
 
@@ -158,6 +159,7 @@ std::vector<Question> shippedQuestions(const DataHome& home) {
 std::vector<sparql::Binding> bindingsFor(const Question& question, const std::vector<std::string>& given) {
   std::vector<sparql::Binding> bindings;
   std::vector<std::string> names;
+  std::set<std::string> given_names;
   const auto refuse = [](const std::string& text, const std::string& why) {
     throw Error(ErrorKind::InvalidArgument, "parameter " + text + ": " + why, Remedy::NameValue);
   };
@@ -174,6 +176,7 @@ std::vector<sparql::Binding> bindingsFor(const Question& question, const std::ve
     const std::string hint = suggestion(name, names);
     if (place == names.end()) refuse(text, "the question has no such parameter" + (hint.empty() ? "" : "; " + hint));
     const auto at = static_cast<std::size_t>(place - names.begin());
+    if (!given_names.insert(name).second) refuse(text, "it may be given once");
     const QueryParameter& parameter = question.parameters[at];
     const std::string value = text.substr(cut + 1);
     if (isNumber(parameter.default_value) && !isNumber(value))

@@ -79,6 +79,14 @@ TEST(Answer, TakesBindings) {
   EXPECT_EQ(answer[0].text("rule"), object.rule);
 }
 
+TEST(Answer, RefusesBindingsOfVariablesThatTheQueryDoesNotHave) {
+  for (const char* name : {"?o", "p", ""}) {
+    QueryOptions options;
+    options.bindings[name] = Term::integer(1);
+    EXPECT_THROW(campusMap().query("SELECT ?o { ?o ?x [] }", options), Error) << name;
+  }
+}
+
 TEST(Answer, WarnsOfNamesThatTheMapDoesNotKnow) {
   const Answer answer = campusMap().query(kPrefix + "SELECT ?o { ?o a clx:Treee }");
   EXPECT_TRUE(answer.empty());

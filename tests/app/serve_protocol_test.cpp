@@ -121,6 +121,7 @@ TEST_F(ServeCommand, FaultyRequestsGetTheirStatusAndAMessage) {
          "rebound.example");
   expect(shared().get("/questions/tree"), 404, "did you mean 'trees'");
   expect(shared().get("/questions/near_point?radius=wide"), 400, "radius");
+  expect(shared().get("/questions/near_point?radius=5&radius=60"), 400, "radius=60: it may be given once");
   expect(shared().query("ASK{}", "X-Long: " + std::string(70'000, 'x') + "\r\n"), 431, "headers");
 }
 

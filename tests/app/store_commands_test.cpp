@@ -36,6 +36,12 @@ TEST_F(StoreCommands, LoadKeepsNamedGraphsAndDumpGivesThemBack) {
   const Outcome one = run("dump " + in("s.clx") + " --graph http://x/g");
   EXPECT_THAT(one.out, HasSubstr("<http://x/a> <http://x/p> \"1\" .\n"));
   EXPECT_EQ(std::count(one.out.begin(), one.out.end(), '\n'), 2);
+  ASSERT_EQ(run("load " + in("unnamed.clx") + " " + in("three.ttl")).code, 0);
+  const Outcome unnamed = run("dump " + in("unnamed.clx") + " --graph ''");
+  EXPECT_EQ(unnamed.out, run("dump " + in("unnamed.clx")).out) << unnamed.err;
+  EXPECT_THAT(unnamed.out, HasSubstr(" .\n"));
+  expectError(run("dump " + in("s.clx") + " --graph ''"), 3, "no quads in the unnamed graph");
+  expectError(run("dump " + in("s.clx") + " --graph http://x/none"), 3, "no quads in graph <http://x/none>");
   writeFile(path("again.nq"), dumped.out);
   ASSERT_EQ(run("load " + in("t.clx") + " " + in("again.nq")).code, 0);
   EXPECT_EQ(run("export --canonical " + in("t.clx")).out.size(), run("export --canonical " + in("s.clx")).out.size());

@@ -121,6 +121,19 @@ def test_bindings_take_terms(campus_map):
         campus_map.query("SELECT * {}", bindings={"o": [1]})
 
 
+def test_ill_typed_literals_keep_their_text(campus_map):
+    xsd = "http://www.w3.org/2001/XMLSchema#"
+    for text, datatype in [("maybe", "boolean"), ("1_000", "integer"), ("1_0", "double"), ("infinity", "double"),
+                           (" 5", "integer"), ("+-5", "integer")]:
+        assert cluxel.Term.literal(text, datatype=xsd + datatype).value == text
+    assert cluxel.Term.literal("0", datatype=xsd + "boolean").value is False
+    assert cluxel.Term.literal("-INF", datatype=xsd + "double").value == float("-inf")
+    answer = campus_map.query('SELECT ?v { VALUES ?v { "1e400"^^<%sdouble> 2.5 } }' % xsd)
+    assert sorted(answer["v"].tolist()) == [2.5, float("inf")]
+    with pytest.raises(cluxel.InvalidArgumentError, match="no variable"):
+        campus_map.query("SELECT * { ?o ?p ?v }", bindings={"?o": 1})
+
+
 def test_terms_are_values():
     one = cluxel.Term.literal("1", datatype="http://www.w3.org/2001/XMLSchema#integer")
     assert one.n3() == '"1"^^<http://www.w3.org/2001/XMLSchema#integer>'

@@ -37,9 +37,20 @@ ExitCode load(const LoadOptions& options, Session& session) {
   return ExitCode::Done;
 }
 
+bool holdsGraph(const rdf::QuadReader& quads, const Term& graph) {
+  rdf::QuadPattern pattern;
+  pattern.g = quads.idOf(graph);
+  rdf::QuadIds quad;
+  return pattern.g && quads.scan(pattern).next(quad);
+}
+
 ExitCode dump(const DumpOptions& options) {
   const rdf::QuadReader quads(rdf::Environment::open(options.store, rdf::OpenMode::ReadOnly)->read());
   const auto graph = options.one_graph ? std::optional(Term::iri(options.graph)) : std::nullopt;
+  if (graph && !holdsGraph(quads, *graph))
+    throw Error(ErrorKind::NotFound,
+                options.store.string() + ": has no quads in " +
+                    (options.graph.empty() ? "the unnamed graph" : "graph <" + options.graph + ">"));
   if (options.output.empty()) {
     writeStoredNQuads(quads, graph, [](std::string_view line) { std::fwrite(line.data(), 1, line.size(), stdout); });
     return ExitCode::Done;
@@ -73,6 +84,7 @@ void addDump(CLI::App& app, Session& session) {
   command->add_option("-o,--output", options->output, "the file to write; default: stdout")->check(named());
   CLI::Option* graph = command->add_option("--graph", options->graph,
                                            "only this graph, as N-Triples; an empty IRI is the unnamed graph");
+  mayBeEmpty(*graph);
   onRun(*command, session, [options, graph, &session] {
     (void)session;
     options->one_graph = graph->count() > 0;
