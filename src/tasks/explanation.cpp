@@ -143,7 +143,12 @@ Explained explanationOf(const mapping::MapReader& map, const NamedThing& named, 
 struct WhyNotOfThing {
   rules::WhyNot why;
   std::string headline;
+  std::optional<rules::SemanticObject> owner;  ///< as the rules make it
 };
+
+std::optional<rules::SemanticObject> copyOf(const rules::SemanticObject* object) {
+  return object == nullptr ? std::nullopt : std::optional(*object);
+}
 
 std::string headlineOf(const rules::SemanticObject* owner, const rules::RuleSet& rules) {
   if (owner == nullptr) return "belongs to no object: unknown";
@@ -185,7 +190,8 @@ std::optional<WhyNotOfThing> whyNotAround(const mapping::MapReader& map, const r
     if (!run) continue;
     const auto id = what.object ? std::optional(idByRules(map, *what.object)) : std::nullopt;
     const rules::SemanticObject* owner = ownerOf(run->result.objects, run->primitives, id);
-    return WhyNotOfThing{whyNot(*std::move(said), rules, run->result, owner, class_iri), headlineOf(owner, rules)};
+    return WhyNotOfThing{whyNot(*std::move(said), rules, run->result, owner, class_iri), headlineOf(owner, rules),
+                         copyOf(owner)};
   }
   return std::nullopt;
 }
@@ -199,7 +205,7 @@ WhyNotOfThing whyNotInMap(const mapping::MapReader& map, const rules::RuleSet& r
   const auto id = what.object ? std::optional(idByRules(map, *what.object)) : std::nullopt;
   const rules::SemanticObject* owner = ownerOf(made.objects, primitives, id);
   auto said = considerFor(map.scene(), rules, context, class_iri, primitives);
-  return {whyNot(std::move(said), rules, made, owner, class_iri), headlineOf(owner, rules)};
+  return {whyNot(std::move(said), rules, made, owner, class_iri), headlineOf(owner, rules), copyOf(owner)};
 }
 
 WhyNotOfThing whyNotOf(const mapping::MapReader& map, const rules::RuleSet& rules, const mapping::MapInputs& inputs,
@@ -240,7 +246,9 @@ ExplanationTexts explainWhyNot(const mapping::MapReader& map, const std::string&
   const mapping::MapInputs inputs = map.inputs();
   const rules::RuleSet rules = mapping::parseInputs(inputs).rules;
   const WhyNotOfThing thing = whyNotOf(map, rules, inputs, name, class_name);
-  return {thing.headline + "\n" + textOf(thing.why, rules), jsonOf(thing.why, rules)};
+  auto json = nlohmann::ordered_json::parse(jsonOf(thing.why, rules));
+  const std::string stated = statedOf(map, rules, thing.owner, json);
+  return {stated + thing.headline + "\n" + textOf(thing.why, rules), json.dump(2)};
 }
 
 std::string explanationGraph(const mapping::MapReader& map, const std::string& name, const std::string& class_name) {

@@ -35,6 +35,9 @@ TEST_F(StateCommand, TakesAClassANameAndARemark) {
   ASSERT_EQ(tree.size(), 32u);
   const Outcome stated = state("--object " + tree + " --is clx:StreetLamp --label \"north gate\" --note seen");
   EXPECT_EQ(stated.code, 0) << stated.err;
+  const Outcome why_not = run("explain " + map().string() + " " + one("StreetLamp") + " --why-not StreetLamp");
+  EXPECT_THAT(why_not.out, HasSubstr("is clx:StreetLamp"));
+  EXPECT_THAT(why_not.out, HasSubstr("without the statement the rules decide"));
   EXPECT_EQ(listed(), 3u);
 }
 

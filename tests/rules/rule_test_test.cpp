@@ -261,6 +261,9 @@ TEST_F(RuleTestFolder, WritesGoldenFilesThatThenPass) {
   const auto written = updateGolden(folder_ / "bin.rules-test.yaml", outdoorCatalogue());
   ASSERT_EQ(written.size(), 1U);
   EXPECT_TRUE(run(golden).passed());
+  writeFile(folder_ / "objects.json", "rules: []\n");
+  EXPECT_THROW(updateGolden(folder_ / "bin.rules-test.yaml", outdoorCatalogue()), Error);
+  EXPECT_EQ(readFile(folder_ / "objects.json"), "rules: []\n") << "a file of another purpose";
   EXPECT_EQ(filesOfRuleTests(folder_ / "bin.rules-test.yaml", outdoorCatalogue()).size(), 2U);
 }
 

@@ -118,7 +118,7 @@ std::string counterfactualText(const Counterfactual& point, const std::string& i
     text += (&change == &point.changes.front() ? "" : ", and ") + change.test + " turns at " +
             number(change.threshold) + unit + " (now " + number(change.measured) + unit + ")";
   }
-  return text + "; then: " + point.outcome + "\n";
+  return text + "; then the rule says: " + point.outcome + "\n";
 }
 
 std::string headline(const Explanation& explanation, const RuleSet& rules, const perception::Scene& scene) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/file_bytes.hpp"
+#include "cluxel/error.hpp"
 #include "rules/explain/path_tree.hpp"
 #include "rules/testing/rule_test_file.hpp"
 
@@ -136,6 +137,19 @@ RuleTestReport runRuleTests(const std::filesystem::path& file, const ClassCatalo
   return TestRun(tests, options).run();
 }
 
+namespace {
+
+/// A golden file is JSON. Anything else there has another purpose, such as a map.
+void refuseOtherFile(const std::filesystem::path& golden) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(golden, ignored)) return;
+  if (const std::string begin = readBeginning(golden, 1); !begin.empty() && begin != "{")
+    throw Error(ErrorKind::StoreUnavailable,
+                golden.string() + ": is no golden file, and would be replaced; name another");
+}
+
+}  // namespace
+
 std::vector<std::filesystem::path> updateGolden(const std::filesystem::path& file, const ClassCatalogue& catalogue,
                                                 const RuleTestOptions& options) {
   const RuleTestFile tests = readRuleTestFile(file, catalogue, options.load);
@@ -146,6 +160,7 @@ std::vector<std::filesystem::path> updateGolden(const std::filesystem::path& fil
     const perception::Scene scene = test.scene ? sceneOf(*test.scene, options) : sceneOfBoxes(test.boxes).scene;
     ReasoningContext context;
     context.oracle = options.oracle;
+    refuseOtherFile(test.expect.golden->file);
     writeFile(test.expect.golden->file, goldenText(tests.rules, scene, reason(scene, tests.rules, context)));
     written.push_back(test.expect.golden->file);
   }

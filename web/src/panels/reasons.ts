@@ -51,7 +51,7 @@ function leastChange(verdict: Verdict, model: MapModel): HTMLElement | null {
   if (!change) return null;
   const needed = change.changes.map((one) =>
     `${one.test.replaceAll('_', ' ')} turns at ${withUnit(one.threshold, one.unit)} (now ${withUnit(one.measured, one.unit)})`);
-  return el('p', { class: 'least-change' }, el('b', {}, 'Least change: '), `${needed.join(', and ')}; then: ${readable(change.outcome, model)}`);
+  return el('p', { class: 'least-change' }, el('b', {}, 'Least change: '), `${needed.join(', and ')}; then the rule says: ${readable(change.outcome, model)}`);
 }
 
 function signed(logOdds: number): string {
