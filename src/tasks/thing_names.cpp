@@ -10,6 +10,8 @@
 #include "mapping/statements/overruled_objects.hpp"
 #include "mapping/thing_history.hpp"
 #include "rdf/map_iris.hpp"
+#include "rdf/ontology/ontology.hpp"
+#include "rules/language/rule_condition.hpp"
 
 namespace cluxel::tasks {
 
@@ -65,13 +67,18 @@ std::optional<mapping::FormerName> formerName(const mapping::MapReader& map, con
   return mapping::Lineage(map.quads(), map.objectIds()).find(name);
 }
 
-/// The class of a resource that is neither object nor primitive, such as a place or a way; empty when there is none.
+/// The most special class of a resource that is neither object nor primitive, such as a place or a way; empty when
+/// there is none.
 std::string classOfOther(const mapping::MapReader& map, const std::string& name) {
+  const rdf::OntologyView ontology = ontologyViewOf(map.quads());
+  std::string found;
   for (const std::string& iri : {name, std::string(rdf::vocabulary::kMap) + name})
     for (const std::string_view graph : {rdf::vocabulary::kGraphObserved, rdf::vocabulary::kGraphInferred})
       for (const Quad& quad : mapping::quadsAbout(map.quads(), iri, graph))
-        if (quad.predicate.text == rdf::vocabulary::rdf("type")) return mapping::localName(quad.object.text);
-  return {};
+        if (quad.predicate.text == rdf::vocabulary::rdf("type") &&
+            (found.empty() || ontology.isA(quad.object.text, found)))
+          found = quad.object.text;
+  return mapping::localName(found);
 }
 
 [[noreturn]] void failUnknown(const mapping::MapReader& map, const std::string& name) {
@@ -80,7 +87,7 @@ std::string classOfOther(const mapping::MapReader& map, const std::string& name)
       throw Error(ErrorKind::NotFound, "object/" + overruled.by_rules.id.hex() +
                                            " was removed by an operator statement; it is back once that is withdrawn");
   if (const std::string class_name = classOfOther(map, name); !class_name.empty())
-    throw Error(ErrorKind::NotFound, "'" + name + "' is a " + class_name +
+    throw Error(ErrorKind::NotFound, "'" + name + "' is " + rules::withArticle(class_name) +
                                          ", neither an object nor a primitive: no rule for objects decided about it; "
                                          "a query tells its facts");
   throw Error(ErrorKind::NotFound, "nothing in the map is named '" + name + "'; the question objects.rq lists objects");

@@ -98,7 +98,7 @@ struct MapEvaluation {
 
 struct EvaluationParams {
   double box_iou = 0.8, point_iou = 0.5;
-  double box_padding_m = 0.20;
+  double box_padding_m = 0.20;  ///< boxes grow by so much on every side: plates are thinner than their points scatter
 };
 
 /// Compares every point of the map's clouds that has truth. Points of unknown truth count nowhere.
