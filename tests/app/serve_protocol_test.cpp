@@ -125,6 +125,28 @@ TEST_F(ServeCommand, FaultyRequestsGetTheirStatusAndAMessage) {
   expect(shared().query("ASK{}", "X-Long: " + std::string(70'000, 'x') + "\r\n"), 431, "headers");
 }
 
+TEST_F(ServeCommand, TheLengthOfABodyIsGivenOnceAndAsANumber) {
+  const std::string post = "POST /sparql HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/sparql-query\r\n";
+  const auto statusOf = [&](const std::string& headers) {
+    return replyOf(shared().exchange(post + headers + "\r\nASK {}")).status;
+  };
+  EXPECT_EQ(statusOf("Connection: close\r\nContent-Length: 6\r\n"), 200);
+  EXPECT_EQ(statusOf(""), 411);
+  for (const char* faulty :
+       {"Content-Length: abc\r\n", "Content-Length: -6\r\n", "Content-Length: 6 x\r\n",
+        "Content-Length: 6\r\nContent-Length: 0\r\n", "Content-Length: 6\r\nTransfer-Encoding: chunked\r\n"})
+    EXPECT_EQ(statusOf(faulty), 400) << faulty;
+}
+
+TEST_F(ServeCommand, ATargetMayNameTheServer) {
+  const auto get = [](const std::string& target) {
+    return replyOf(shared().exchange("GET " + target + " HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n"));
+  };
+  EXPECT_EQ(get("http://localhost/maps").body, get("/maps").body);
+  EXPECT_EQ(get("http://localhost/maps").status, 200);
+  EXPECT_EQ(get("http://localhost").status, 200);
+}
+
 TEST_F(ServeCommand, LongQueriesPassByPost) {
   const std::string query = "ASK {}" + std::string(200'000, ' ');
   EXPECT_EQ(shared().query(query).status, 200);

@@ -25,8 +25,16 @@ namespace {
 /// The connection that this thread serves.
 thread_local HttpStream* current_stream = nullptr;
 
+/// The path of a target that names the server, too, as proxies get it: http://host/path.
+std::string pathOf(const std::string& target) {
+  const std::size_t scheme = target.find("://");
+  if (target.starts_with('/') || scheme == std::string::npos) return target;
+  const std::size_t path = target.find('/', scheme + 3);
+  return path == std::string::npos ? "/" : target.substr(path);
+}
+
 HttpRequest requestOf(const httplib::Request& parsed, std::string body) {
-  HttpRequest request{parsed.method, parsed.target, {}, std::move(body), parsed.remote_addr};
+  HttpRequest request{parsed.method, pathOf(parsed.target), {}, std::move(body), parsed.remote_addr};
   for (const auto& [name, value] : parsed.headers) request.headers.emplace_back(lowerCase(name), value);
   return request;
 }
@@ -47,6 +55,14 @@ void fill(httplib::Response& out, HttpResponse response) {
   }
   if (!response.content_type.empty()) out.set_header("Content-Type", response.content_type);
   out.body = std::move(response.body);
+}
+
+/// Whether the length of the body is a number and given once. Otherwise a proxy could see another request behind it.
+bool hasSoundLength(const httplib::Request& request) {
+  const std::string length = request.get_header_value("Content-Length");
+  return request.get_header_value_count("Content-Length") < 2 &&
+         length.find_first_not_of("0123456789") == std::string::npos &&
+         (length.empty() || !request.has_header("Transfer-Encoding"));
 }
 
 bool hasBody(const httplib::Request& request) {
@@ -110,7 +126,16 @@ struct HttpServer::Impl : httplib::Server {
     ::listen(svr_sock_, kBacklog);  // cpp-httplib's queue of five connections is short
   }
 
+  static HandlerResponse refuse(httplib::Response& out, int status, const std::string& message) {
+    endAfter(out);
+    fill(out, textResponse(status, message));
+    return HandlerResponse::Handled;
+  }
+
   HandlerResponse answerWithoutBody(const httplib::Request& in, httplib::Response& out) {
+    if (!hasSoundLength(in)) return refuse(out, 400, "the length of the body is no number, or is given twice");
+    const bool has_length = in.has_header("Content-Length") || in.has_header("Transfer-Encoding");
+    if (in.method == "POST" && !has_length) return refuse(out, 411, "the length of the body is missing");
     const bool is_too_large = in.get_header_value<uint64_t>("Content-Length") > options.max_body_bytes;
     if (in.method == "POST" && !in.is_multipart_form_data() && !in.has_header("Content-Encoding") && !is_too_large)
       return HandlerResponse::Unhandled;
