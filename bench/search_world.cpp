@@ -135,7 +135,11 @@ tasks::PassableGrid SearchWorld::trueGrid() const {
 }
 
 Eigen::Vector2d SearchWorld::start() const {
-  return tasks::lastStop(*map_);
+  // The scans have no times; their names follow the route.
+  const std::vector<mapping::Cloud> clouds = map_->clouds();
+  const auto last =
+      std::max_element(clouds.begin(), clouds.end(), [](const auto& a, const auto& b) { return a.source < b.source; });
+  return last->T_map_sensor.translation().head<2>();
 }
 
 bool SearchWorld::isSeenFrom(const SearchTarget& target, std::uint32_t cell) const {

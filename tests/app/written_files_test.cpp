@@ -12,28 +12,29 @@ TEST_F(Program, NoOutputReplacesAMap) {
     writeFile(path(name), bytes);
     return path(name).string();
   };
-  fs::create_symlink(copyTo("linked.clx"), path("link.pgm"));
-  copyTo("site.yaml");
+  fs::create_symlink(copyTo("of_a_map_linked.clx"), path("of_a_map_link.pgm"));
+  copyTo("of_a_map_site.yaml");
   for (const std::string& arguments : {
-           "costmap " + map + " -o " + copyTo("other.pgm"),
-           "costmap " + map + " -o " + path("site.pgm").string(),
-           "costmap " + map + " -o " + path("link.pgm").string(),
-           "search learn " + map + " -o " + copyTo("places.ttl"),
-           "rules test --junit " + copyTo("report.xml"),
-           "register " + campus + " --force -o " + copyTo("poses.yaml"),
-           "export " + map + " --canonical -o " + copyTo("quads.nq"),
-           "view " + map + " -o " + copyTo("page.html"),
-           "info " + map + " --html " + copyTo("figures.html"),
-           "state " + map + " --export " + copyTo("statements.ttl"),
-           "rules doc outdoor.rules.yaml -o " + copyTo("rules.md"),
+           "costmap " + map + " -o " + copyTo("of_a_map_other.pgm"),
+           "costmap " + map + " -o " + path("of_a_map_site.pgm").string(),
+           "costmap " + map + " -o " + path("of_a_map_link.pgm").string(),
+           "search learn " + map + " -o " + copyTo("of_a_map_places.ttl"),
+           "rules test --junit " + copyTo("of_a_map_report.xml"),
+           "register " + campus + " --force -o " + copyTo("of_a_map_poses.yaml"),
+           "export " + map + " --canonical -o " + copyTo("of_a_map_quads.nq"),
+           "view " + map + " -o " + copyTo("of_a_map_page.html"),
+           "info " + map + " --html " + copyTo("of_a_map_figures.html"),
+           "state " + map + " --export " + copyTo("of_a_map_statements.ttl"),
+           "rules doc outdoor.rules.yaml -o " + copyTo("of_a_map_rules.md"),
        }) {
     SCOPED_TRACE(arguments);
     expectError(run(arguments), 5, "is a map, which the output would replace");
   }
-  for (const char* name : {"other.pgm", "site.yaml", "linked.clx", "places.ttl", "report.xml", "poses.yaml", "quads.nq",
-                           "page.html", "figures.html", "statements.ttl", "rules.md"})
+  for (const char* name : {"of_a_map_other.pgm", "of_a_map_site.yaml", "of_a_map_linked.clx", "of_a_map_places.ttl",
+                           "of_a_map_report.xml", "of_a_map_poses.yaml", "of_a_map_quads.nq", "of_a_map_page.html",
+                           "of_a_map_figures.html", "of_a_map_statements.ttl", "of_a_map_rules.md"})
     EXPECT_EQ(readFile(path(name)), bytes) << name;
-  EXPECT_FALSE(fs::exists(path("site.pgm"))) << "an image without its frame";
+  EXPECT_FALSE(fs::exists(path("of_a_map_site.pgm"))) << "an image without its frame";
 }
 
 }  // namespace

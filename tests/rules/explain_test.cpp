@@ -117,8 +117,9 @@ TEST(Explaining, ReadsAsText) {
   const std::string text = textOf(explain(built.scene, rules, {}, 0), rules, built.scene);
   EXPECT_THAT(text, ::testing::HasSubstr("belongs to clx:SmallObject"));
   EXPECT_THAT(text, ::testing::HasSubstr("no   height of pole >= 6 m (measured 5 m, margin 1 m)"));
-  EXPECT_THAT(
-      text, ::testing::HasSubstr("least change: height of pole >= 6 m turns at 6 m (now 5 m); then the rule says: clx:UtilityPole"));
+  EXPECT_THAT(text,
+              ::testing::HasSubstr(
+                  "least change: height of pole >= 6 m turns at 6 m (now 5 m); then the rule says: clx:UtilityPole"));
   EXPECT_THAT(text, ::testing::HasSubstr("see also rule small/rest"));
 }
 
