@@ -64,6 +64,31 @@ TEST(WaysOfACampus, RoutesStayOnOpenCellsAndAreReported) {
   EXPECT_NE(routesJson(map, grid.frame, answer).find("\"barriers\": []"), std::string::npos);
 }
 
+TEST(WaysOfACampus, StayNearObjectsPlacesAndWays) {
+  const MapReader& map = CampusMap::shared().map();
+  const PassableGrid plain = passableIn(map, {});
+  const auto shareOfDearCells = [&](const std::string& near) {
+    WayRequest request;
+    request.near = near;
+    const PassableGrid grid = passableIn(map, request);
+    std::size_t dear = 0;
+    for (std::uint32_t cell = 0; cell < grid.frame.size(); ++cell) {
+      const double times = static_cast<double>(grid.factor[cell]) / static_cast<double>(plain.factor[cell]);
+      EXPECT_TRUE(std::abs(times - 1) < 1e-5 || std::abs(times - 3) < 1e-5) << times;
+      dear += times > 2 ? 1 : 0;
+    }
+    return static_cast<double>(dear) / static_cast<double>(grid.frame.size());
+  };
+  for (const char* near : {"Tree", "Static", "Way"}) {
+    EXPECT_GT(shareOfDearCells(near), 0) << near;
+    EXPECT_LT(shareOfDearCells(near), 1) << near;
+  }
+  EXPECT_LT(shareOfDearCells("Ground"), shareOfDearCells("Tree")) << "one walks on it";
+  WayRequest request;
+  request.near = "Derivation";
+  EXPECT_THROW(passableIn(map, request), Error) << "it has no place";
+}
+
 TEST(WaysOfACampus, NamesAreThoseOfTheMap) {
   const MapReader& map = CampusMap::shared().map();
   EXPECT_EQ(placeNamed(map, "1.5,-2"), Eigen::Vector2d(1.5, -2));

@@ -12,6 +12,7 @@
 #include "tasks/campus_map_fixture.hpp"
 #include "tasks/search/search_field.hpp"
 #include "tasks/search/search_tour.hpp"
+#include "tasks/ways/class_cells.hpp"
 #include "tasks/ways/way_search.hpp"
 
 namespace cluxel::tasks {

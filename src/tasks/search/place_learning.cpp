@@ -12,6 +12,7 @@
 #include "mapping/facts/object_geometry.hpp"
 #include "rdf/vocabulary.hpp"
 #include "tasks/search/search_field.hpp"
+#include "tasks/ways/class_cells.hpp"
 #include "tasks/ways/passable_grid.hpp"
 #include "tasks/ways/route.hpp"
 

@@ -37,10 +37,6 @@ struct SearchField {
   std::vector<PlaceNumber> reason;  ///< the place that says most about the cell, or kAnywhere
 };
 
-/// The cells that hold something of a class: cells in which such an object stands, the positions of things that
-/// SPARQL rules derive, and cells along the lines of ways.
-std::vector<std::uint8_t> cellsWith(const mapping::MapReader& map, const TerrainGrid& terrain,
-                                    const rdf::OntologyView& ontology, const std::string& class_iri);
 /// The usual places as they are in the map.
 std::vector<PlaceEvidence> evidenceOf(const mapping::MapReader& map, const TerrainGrid& terrain,
                                       const rdf::OntologyView& ontology, const std::vector<rdf::UsualPlace>& places);

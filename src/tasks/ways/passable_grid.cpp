@@ -80,14 +80,10 @@ void closeCells(const TerrainGrid& terrain, const WayParams& params, const std::
 }
 
 /// A metre costs more on slopes, beside things, and far from what the way should stay near.
-void priceCells(const TerrainGrid& terrain, const WayParams& params, const std::vector<bool>& near,
+void priceCells(const TerrainGrid& terrain, const WayParams& params, const std::vector<std::uint8_t>& near,
                 PassableGrid& grid) {
   constexpr double slope_weight = 5, crowded_weight = 0.5, roomy_m = 1;
-  std::vector<std::uint8_t> is_near(grid.frame.size(), 0);
-  for (std::uint32_t cell = 0; !near.empty() && cell < grid.frame.size(); ++cell)
-    for (const std::uint32_t thing : terrain.thingsIn(cell))
-      if (thing != kUnnamedThing && near[thing]) is_near[cell] = 1;
-  const NearestMarked nearest = near.empty() ? NearestMarked{} : nearestMarked(grid.frame, is_near);
+  const NearestMarked nearest = near.empty() ? NearestMarked{} : nearestMarked(grid.frame, near);
   for (std::uint32_t cell = 0; cell < grid.frame.size(); ++cell) {
     double factor = 1 + slope_weight * grid.relief.slope[cell];
     factor += crowded_weight * std::max(0.0, 1 - static_cast<double>(grid.clearance_m[cell]) / roomy_m);
@@ -145,7 +141,7 @@ double PassableGrid::stepBetween(std::uint32_t a, std::uint32_t b) const {
 }
 
 PassableGrid passableOf(const TerrainGrid& terrain, const WayParams& params, const std::vector<bool>& is_left_out,
-                        const std::vector<bool>& near) {
+                        const std::vector<std::uint8_t>& near) {
   const std::size_t size = terrain.frame.size();
   PassableGrid grid;
   grid.frame = terrain.frame;

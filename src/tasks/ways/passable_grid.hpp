@@ -38,10 +38,10 @@ struct PassableGrid {
   bool isStepOpen(std::uint32_t a, std::uint32_t b) const { return stepBetween(a, b) <= max_step_m; }
 };
 
-/// `is_left_out`: per object, true when it is to be left out. `near`: objects that the way should stay near; empty:
-/// none.
+/// `is_left_out`: per object, true when it is to be left out. `near`: per cell, 1 where something is that the way
+/// should stay near; empty: nothing.
 PassableGrid passableOf(const TerrainGrid& terrain, const WayParams& params, const std::vector<bool>& is_left_out,
-                        const std::vector<bool>& near);
+                        const std::vector<std::uint8_t>& near);
 
 /// The distance [cells] from each cell to the nearest marked one, and that cell's number; infinite and the cell itself
 /// without any. Exact Euclidean distance in linear time.

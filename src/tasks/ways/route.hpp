@@ -18,7 +18,7 @@ struct WayRequest {
   TerrainParams terrain = {};
   std::vector<std::string> without;  ///< objects to leave out
   bool with_gone = false;            ///< objects that later scans saw through (clx:seenThrough) are there all the same
-  std::string near;                  ///< the way should stay near objects of this class; empty: none
+  std::string near;                  ///< the way should stay near things, places or ways of this class; empty: none
 };
 
 /// Per object: whether later scans saw through its place (clx:seenThrough).
@@ -26,7 +26,7 @@ std::vector<bool> goneAmong(const mapping::MapReader& map);
 /// Per object: whether the request leaves it out. Throws as passableIn().
 std::vector<bool> leftOut(const mapping::MapReader& map, const WayRequest& request);
 
-/// Throws Error (NotFound) for a class that the map's ontology does not know.
+/// Throws Error (NotFound) for a class that the map's ontology does not know, and where there is nothing to stay near.
 PassableGrid passableIn(const mapping::MapReader& map, const WayRequest& request);
 /// The same with a terrain that is there already.
 PassableGrid passableIn(const mapping::MapReader& map, const TerrainGrid& terrain, const WayRequest& request);

@@ -10,19 +10,20 @@
 #include "rdf/map_iris.hpp"
 #include "rdf/ontology/ontology.hpp"
 #include "rdf/vocabulary.hpp"
+#include "tasks/ways/class_cells.hpp"
 #include "tasks/ways/route.hpp"
 
 namespace cluxel::tasks {
 
 namespace {
 
-/// Which objects belong to a class, or are of a mobility.
+/// Which objects, and which cells, belong to a class or are of a mobility.
 class ObjectSelector {
  public:
   explicit ObjectSelector(const mapping::MapReader& map) : map_(map), ontology_(ontologyViewOf(map.quads())) {}
 
   void mark(const std::string& name, std::vector<bool>& marked) const {
-    const bool is_mobility = name == "Movable" || name == "Static";
+    const bool is_mobility = isMobility(name);
     const std::string iri = is_mobility ? std::string() : classNamed(ontology_, name);
     const rdf::Mobility mobility = name == "Movable" ? rdf::Mobility::Movable : rdf::Mobility::Static;
     for (std::size_t i = 0; i < map_.objects().size(); ++i) {
@@ -34,7 +35,28 @@ class ObjectSelector {
     }
   }
 
+  /// Throws Error (NotFound) where there is nothing of it.
+  std::vector<std::uint8_t> cells(const std::string& name, const TerrainGrid& terrain) const {
+    std::vector<std::uint8_t> cells(terrain.frame.size(), 0);
+    if (isMobility(name)) {
+      std::vector<bool> marked(map_.objects().size(), false);
+      mark(name, marked);
+      for (std::uint32_t cell = 0; cell < cells.size(); ++cell)
+        for (const std::uint32_t thing : terrain.thingsIn(cell))
+          if (thing != kUnnamedThing && marked[thing]) cells[cell] = 1;
+    } else {
+      const std::string iri = classNamed(ontology_, name);
+      const bool is_surface = ontology_.isA(iri, rdf::vocabulary::clx("Surface"));  // one walks on it
+      cells = is_surface ? terrain.seen : cellsWith(map_, terrain, ontology_, iri);
+    }
+    if (std::find(cells.begin(), cells.end(), 1) == cells.end())
+      throw Error(ErrorKind::NotFound, "the map holds nothing of " + name + " that a way could stay near");
+    return cells;
+  }
+
  private:
+  static bool isMobility(const std::string& name) { return name == "Movable" || name == "Static"; }
+
   const mapping::MapReader& map_;
   rdf::OntologyView ontology_;
 };
@@ -126,11 +148,8 @@ PassableGrid passableIn(const mapping::MapReader& map, const WayRequest& request
 }
 
 PassableGrid passableIn(const mapping::MapReader& map, const TerrainGrid& terrain, const WayRequest& request) {
-  std::vector<bool> near;
-  if (!request.near.empty()) {
-    near.assign(map.objects().size(), false);
-    ObjectSelector(map).mark(request.near, near);
-  }
+  std::vector<std::uint8_t> near;
+  if (!request.near.empty()) near = ObjectSelector(map).cells(request.near, terrain);
   return passableOf(terrain, request.params, leftOut(map, request), near);
 }
 

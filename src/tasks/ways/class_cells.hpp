@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where on the ground something of a class is.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "rdf/ontology/ontology.hpp"
+#include "tasks/ways/terrain_grid.hpp"
+
+namespace cluxel::tasks {
+
+/// The cells that hold something of a class: cells in which such an object stands, the
+/// positions of things that SPARQL rules derive, and cells along the lines of ways.
+std::vector<std::uint8_t> cellsWith(const mapping::MapReader& map, const TerrainGrid& terrain,
+                                    const rdf::OntologyView& ontology, const std::string& class_iri);
+
+}  // namespace cluxel::tasks
