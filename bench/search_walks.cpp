@@ -158,7 +158,7 @@ double searchLength(const SearchWorld& world, const std::vector<rdf::UsualPlace>
   search.view_m = world.params().view_m;
   search.eye_m = world.params().eye_m;
   tasks::SearchField field = fieldOf(world.frame(), knownShare(world.map(), terrain, walker.sight(), search),
-                                     evidenceOf(world.map(), terrain, ontology, places));
+                                     evidenceOf(world.map(), terrain, ontology, places, tasks::goneAmong(world.map())));
   tasks::TourParams tour;
   tour.max_stops = 1;
   while (!walker.isDone()) {

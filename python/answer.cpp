@@ -4,7 +4,6 @@
 
 #include <charconv>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
 #include <optional>
 #include <type_traits>
@@ -23,8 +22,12 @@ std::optional<Number> numberOf(const std::string& text) {
   const char* const end = text.data() + text.size();
   const auto [stop, error] = std::from_chars(begin, end, value);
   if (stop != end) return std::nullopt;
-  if constexpr (std::is_floating_point_v<Number>)  // infinite or 0, as the datatype has it
-    if (error == std::errc::result_out_of_range) return std::strtod(begin, nullptr);
+  if constexpr (std::is_floating_point_v<Number>)
+    if (error == std::errc::result_out_of_range) {  // infinite or 0, as the datatype has it
+      const bool is_small = text.find("e-") != std::string::npos || text.find("E-") != std::string::npos;
+      const Number size = is_small ? Number{0} : std::numeric_limits<Number>::infinity();
+      return text.starts_with('-') ? -size : size;
+    }
   return error == std::errc() ? std::optional(value) : std::nullopt;
 }
 

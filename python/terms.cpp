@@ -67,9 +67,11 @@ bool isNumberType(const std::string& datatype) {
 }
 
 /// Python reads more than XML Schema: blanks, "1_000" and "infinity".
-bool isNumberText(const std::string& text) {
-  return text.find_first_not_of("0123456789+-.eE") == std::string::npos || text == "INF" || text == "-INF" ||
-         text == "NaN";
+bool isNumberText(const std::string& text, const std::string& datatype) {
+  if (isLocalXsd(datatype, {"double", "float"}))
+    return text.find_first_not_of("0123456789+-.eE") == std::string::npos || text == "INF" || text == "+INF" ||
+           text == "-INF" || text == "NaN";
+  return text.find_first_not_of("0123456789+-.") == std::string::npos;
 }
 
 Term termOf(const py::handle& value) {
@@ -88,7 +90,7 @@ py::object valueOf(const Term& term) {
   if (term.kind == TermKind::Literal) {
     PyObject* number = nullptr;
     const py::str text(term.text);
-    if (isNumberType(term.datatype) && isNumberText(term.text))
+    if (isNumberType(term.datatype) && isNumberText(term.text, term.datatype))
       number = isIntegerType(term.datatype) ? PyLong_FromUnicodeObject(text.ptr(), 10) : PyFloat_FromString(text.ptr());
     if (number != nullptr) return py::reinterpret_steal<py::object>(number);
     PyErr_Clear();  // an ill-typed literal keeps its text

@@ -82,7 +82,7 @@ TEST_F(RegisterCommand, CheckIsExitCodeOneWhenAScanIsTooFarOffToBeCompared) {
   const std::string right = path("exact").string();
   ASSERT_EQ(run("simulate " + right + " --stops 3 --size 50 --points-per-stop 20000").code, 0);
   EXPECT_EQ(run("register --check " + right).code, 0);
-  for (const char* off : {"0 0 3", "4 -3 0"}) {
+  for (const char* off : {"0 0 3", "4 -3 0", "100 0 0", "0 0 30"}) {
     std::ifstream poses(right + "/poses.txt");
     std::ofstream wrong(path("wrong.txt"));
     std::istringstream by(off);

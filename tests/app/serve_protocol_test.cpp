@@ -134,7 +134,8 @@ TEST_F(ServeCommand, TheLengthOfABodyIsGivenOnceAndAsANumber) {
   EXPECT_EQ(statusOf(""), 411);
   for (const char* faulty :
        {"Content-Length: abc\r\n", "Content-Length: -6\r\n", "Content-Length: 6 x\r\n",
-        "Content-Length: 6\r\nContent-Length: 0\r\n", "Content-Length: 6\r\nTransfer-Encoding: chunked\r\n"})
+        "Content-Length: 6\r\nContent-Length: 0\r\n", "Content-Length: 6\r\nTransfer-Encoding: chunked\r\n",
+        "Transfer-Encoding: gzip, chunked\r\n"})
     EXPECT_EQ(statusOf(faulty), 400) << faulty;
 }
 
@@ -145,6 +146,7 @@ TEST_F(ServeCommand, ATargetMayNameTheServer) {
   EXPECT_EQ(get("http://localhost/maps").body, get("/maps").body);
   EXPECT_EQ(get("http://localhost/maps").status, 200);
   EXPECT_EQ(get("http://localhost").status, 200);
+  EXPECT_EQ(get("http://localhost?x=/maps").body, get("/?x=/maps").body);
 }
 
 TEST_F(ServeCommand, LongQueriesPassByPost) {

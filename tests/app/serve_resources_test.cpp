@@ -80,6 +80,8 @@ TEST_F(ServeCommand, AnObjectIsExplainedAsByTheCommandExplain) {
   EXPECT_EQ(shared().get("/objects/" + id + "/explanation?whynot=Tree").status, 400);
   EXPECT_EQ(shared().get("/objects/ffffffffffff").status, 404);
   EXPECT_EQ(shared().get("/objects/a").status, 400);
+  EXPECT_EQ(shared().get("/objects/" + id + "?limit=1").status, 400);
+  EXPECT_EQ(shared().get("/objects/" + id + "/points?limit=1").status, 400);
 }
 
 TEST_F(ServeCommand, PointsOfAnObjectLieInItsBox) {

@@ -25,6 +25,7 @@ TEST_F(Program, NoOutputReplacesAMap) {
            "view " + map + " -o " + copyTo("of_a_map_page.html"),
            "info " + map + " --html " + copyTo("of_a_map_figures.html"),
            "state " + map + " --export " + copyTo("of_a_map_statements.ttl"),
+           "serve " + map + " --port 0 --log " + copyTo("of_a_map_log.txt"),
            "rules doc outdoor.rules.yaml -o " + copyTo("of_a_map_rules.md"),
        }) {
     SCOPED_TRACE(arguments);
@@ -32,7 +33,7 @@ TEST_F(Program, NoOutputReplacesAMap) {
   }
   for (const char* name : {"of_a_map_other.pgm", "of_a_map_site.yaml", "of_a_map_linked.clx", "of_a_map_places.ttl",
                            "of_a_map_report.xml", "of_a_map_poses.yaml", "of_a_map_quads.nq", "of_a_map_page.html",
-                           "of_a_map_figures.html", "of_a_map_statements.ttl", "of_a_map_rules.md"})
+                           "of_a_map_figures.html", "of_a_map_statements.ttl", "of_a_map_rules.md", "of_a_map_log.txt"})
     EXPECT_EQ(readFile(path(name)), bytes) << name;
   EXPECT_FALSE(fs::exists(path("of_a_map_site.pgm"))) << "an image without its frame";
 }

@@ -124,7 +124,7 @@ def test_bindings_take_terms(campus_map):
 def test_ill_typed_literals_keep_their_text(campus_map):
     xsd = "http://www.w3.org/2001/XMLSchema#"
     for text, datatype in [("maybe", "boolean"), ("1_000", "integer"), ("1_0", "double"), ("infinity", "double"),
-                           (" 5", "integer"), ("+-5", "integer")]:
+                           (" 5", "integer"), ("+-5", "integer"), ("INF", "decimal"), ("1e5", "decimal")]:
         assert cluxel.Term.literal(text, datatype=xsd + datatype).value == text
     assert cluxel.Term.literal("0", datatype=xsd + "boolean").value is False
     assert cluxel.Term.literal("-INF", datatype=xsd + "double").value == float("-inf")

@@ -95,6 +95,10 @@ TEST(WaysOfACampus, NamesAreThoseOfTheMap) {
   const std::string hash = map.objects()[0].id.hex();
   EXPECT_EQ(placeNamed(map, "#0"), placeNamed(map, hash));
   EXPECT_EQ(placeNamed(map, rdf::iriOfObject(map.objects()[0].id)), placeNamed(map, hash));
+  for (const std::string& written :
+       {"map:object/" + hash, "object/" + hash.substr(0, 12), "<" + rdf::iriOfObject(map.objects()[0].id) + ">"})
+    EXPECT_EQ(placeNamed(map, written), placeNamed(map, hash)) << written;
+  EXPECT_THROW(placeNamed(map, "primitive/" + hash), Error);
   for (const char* bad : {"#100000", "1,x", "abc", "", "ffffffffffff"})
     EXPECT_THROW(placeNamed(map, bad), Error) << bad;
   WayRequest request;

@@ -178,7 +178,7 @@ TEST(SearchField, FindsAWayWhereverItRuns) {
   const MapReader& map = CampusMap::shared().map();
   const TerrainGrid terrain = terrainOf(map);
   const rdf::OntologyView ontology = rdf::ontologyViewOf(ontologySources(map.inputs().ontology));
-  const auto marked = cellsWith(map, terrain, ontology, rdf::vocabulary::clx("Way"));
+  const auto marked = cellsWith(map, terrain, ontology, rdf::vocabulary::clx("Way"), goneAmong(map));
   const WayGraph ways = map.ways();
   ASSERT_FALSE(ways.ways.empty());
   std::size_t on_line = 0;

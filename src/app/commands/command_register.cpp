@@ -100,11 +100,18 @@ void printReport(const scan::PoseRegistration& report, const scan::ScanSet& set,
   std::printf(check ? "\n" : " before, %.3f m after\n", report.residual_after_m);
 }
 
-/// Whether measured pairs join all scans that lie beside each other.
+/// Whether measured pairs join all scans.
 bool areCompared(const scan::PoseRegistration& report) {
-  return std::all_of(report.pairs.begin(), report.pairs.end(), [&](const scan::RegisteredPair& pair) {
-    return report.scans[pair.first].group == report.scans[pair.second].group;
-  });
+  return std::all_of(report.scans.begin(), report.scans.end(),
+                     [&](const scan::RefinedScan& scan) { return scan.group == report.scans.front().group; });
+}
+
+/// Which scans no measured pair joins to the first, for the reader.
+void printNotCompared(const scan::PoseRegistration& report, const scan::ScanSet& set) {
+  for (const scan::RefinedScan& scan : report.scans)
+    if (scan.group != report.scans.front().group)
+      std::printf("%s could not be compared with %s, also not by way of others: it may be far off\n",
+                  set.file(scan.index).path.c_str(), set.file(report.scans.front().index).path.c_str());
 }
 
 ExitCode checkPoses(const RegisterOptions& options, const scan::ScanSet& set, Session& session) {
@@ -122,11 +129,12 @@ ExitCode checkPoses(const RegisterOptions& options, const scan::ScanSet& set, Se
     printJson(json);
   } else {
     printReport(report, set, true);
-    std::printf("worst residual %.3f m: %s --max-residual %.3f m\n", worst_m,
-                worst_m <= options.max_residual_m ? "within" : "above", options.max_residual_m);
-    if (!all_compared)
-      std::printf(
-          "scans with too little overlap to be compared are joined by no other pairs: poses may be wrong there\n");
+    const bool has_measured = std::any_of(report.scans.begin(), report.scans.end(),
+                                          [](const scan::RefinedScan& scan) { return scan.pairs > 0; });
+    if (has_measured)
+      std::printf("worst residual %.3f m: %s --max-residual %.3f m\n", worst_m,
+                  worst_m <= options.max_residual_m ? "within" : "above", options.max_residual_m);
+    printNotCompared(report, set);
   }
   return fits ? ExitCode::Done : ExitCode::NegativeFinding;
 }

@@ -7,6 +7,7 @@
 #include <mutex>
 
 #include "app/command.hpp"
+#include "app/shared_options.hpp"
 #include "app/stop_signals.hpp"
 #include "base/file_bytes.hpp"
 #include "base/utc_time.hpp"
@@ -36,6 +37,7 @@ class AccessLines {
  public:
   explicit AccessLines(const ServeArguments& arguments) {
     if (arguments.quiet) return;
+    refuseToReplaceMap(arguments.log);
     file_ = arguments.log.empty() ? stderr : std::fopen(arguments.log.c_str(), "ae");
     if (file_ == nullptr)
       throw Error(ErrorKind::StoreUnavailable, arguments.log.string() + ": the access log cannot be written");

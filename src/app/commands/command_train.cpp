@@ -45,6 +45,7 @@ ExitCode trainModel(const TrainOptions& options, Session& session) {
   std::error_code ignored;
   if (fs::exists(options.output, ignored) && !fs::is_directory(options.output, ignored))
     throw Error(ErrorKind::StoreUnavailable, options.output.string() + ": is a file; name a folder for the model");
+  for (const char* name : {"model.json", "README.md"}) refuseToReplaceMap(options.output / name);
   const std::vector<perception::TrainingSource> sources = sourcesOf(options, session.dataHome());
   perception::CopyParams copies;
   if (options.no_copies) copies = {.sensors = {}, .drives = {}};

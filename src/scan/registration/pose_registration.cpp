@@ -237,11 +237,8 @@ PoseRegistration registerPoses(const ScanSet& set, const RegistrationParams& par
   const std::vector<ScanPair> pairs = widerPairs(placesOf(scans, coarse, params.reach_m), kMaxPairDistance_m);
   std::vector<PairOutcome> outcomes(pairs.size(), PairOutcome::Used);
   const Poses poses = registration.fine(pairs, scans.given, coarse, outcomes);
-  const std::vector<PairEvidence> after = registration.evidence(pairs, poses, kReportReach_m);
-  for (std::size_t k = 0; k < pairs.size(); ++k)
-    if (outcomes[k] == PairOutcome::Used && after[k].residual_m > params.max_residual_m)
-      outcomes[k] = PairOutcome::LargeResidual;  // of poses that have not settled
-  return reported(scans, poses, pairs, outcomes, registration.evidence(pairs, scans.given, kReportReach_m), after);
+  return reported(scans, poses, pairs, outcomes, registration.evidence(pairs, scans.given, kReportReach_m),
+                  registration.evidence(pairs, poses, kReportReach_m));
 }
 
 PoseRegistration measurePoses(const ScanSet& set, const RegistrationParams& params, unsigned threads,

@@ -29,8 +29,9 @@ thread_local HttpStream* current_stream = nullptr;
 std::string pathOf(const std::string& target) {
   const std::size_t scheme = target.find("://");
   if (target.starts_with('/') || scheme == std::string::npos) return target;
-  const std::size_t path = target.find('/', scheme + 3);
-  return path == std::string::npos ? "/" : target.substr(path);
+  const std::size_t path = target.find_first_of("/?", scheme + 3);
+  if (path == std::string::npos) return "/";
+  return target[path] == '/' ? target.substr(path) : "/" + target.substr(path);
 }
 
 HttpRequest requestOf(const httplib::Request& parsed, std::string body) {
@@ -57,12 +58,15 @@ void fill(httplib::Response& out, HttpResponse response) {
   out.body = std::move(response.body);
 }
 
-/// Whether the length of the body is a number and given once. Otherwise a proxy could see another request behind it.
+/// Whether the length of the body is a number and given once, or the body comes in chunks. Otherwise a proxy could see
+/// another request behind it.
 bool hasSoundLength(const httplib::Request& request) {
   const std::string length = request.get_header_value("Content-Length");
   return request.get_header_value_count("Content-Length") < 2 &&
          length.find_first_not_of("0123456789") == std::string::npos &&
-         (length.empty() || !request.has_header("Transfer-Encoding"));
+         (length.empty() || !request.has_header("Transfer-Encoding")) &&
+         (!request.has_header("Transfer-Encoding") ||
+          lowerCase(request.get_header_value("Transfer-Encoding")) == "chunked");
 }
 
 bool hasBody(const httplib::Request& request) {
@@ -133,7 +137,9 @@ struct HttpServer::Impl : httplib::Server {
   }
 
   HandlerResponse answerWithoutBody(const httplib::Request& in, httplib::Response& out) {
-    if (!hasSoundLength(in)) return refuse(out, 400, "the length of the body is no number, or is given twice");
+    if (!hasSoundLength(in))
+      return refuse(out, 400,
+                    "the length of the body is no number or is given twice, or its transfer encoding is not chunked");
     const bool has_length = in.has_header("Content-Length") || in.has_header("Transfer-Encoding");
     if (in.method == "POST" && !has_length) return refuse(out, 411, "the length of the body is missing");
     const bool is_too_large = in.get_header_value<uint64_t>("Content-Length") > options.max_body_bytes;

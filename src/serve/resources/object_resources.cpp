@@ -139,6 +139,7 @@ HttpResponse answerObjects(const ServedMap& map, const ResourceRequest& asked) {
 }
 
 HttpResponse answerObject(const ServedMap& map, const ResourceRequest& asked, const std::string& id) {
+  requireKnown(asked.target.parameters, {});
   const auto table = objectsOf(map.quads());
   const Object& object = objectNamed(*table, map.quads(), id);
   ObjectJson json = objectJson(object);
@@ -165,6 +166,7 @@ HttpResponse answerExplanation(ServedMap& map, const ResourceRequest& asked, con
 
 HttpResponse answerPoints(ServedMap& map, const ResourceRequest& asked, const std::string& id) {
   const auto chosen = negotiate(asked.request.header("accept"), {"application/json", "text/csv"});
+  requireKnown(asked.target.parameters, {});
   if (!chosen) throw Refusal(406, "points can be had as application/json or text/csv");
   PointCloud points;
   map.withReader([&](const mapping::MapReader& reader) { points = pointsOf(reader, currentObject(reader, id)); });

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Collects the things of a map that a register is compared with.
 #include <map>
+#include <set>
 #include <tuple>
 
 #include "mapping/map_reader.hpp"
+#include "mapping/thing_history.hpp"
 #include "rdf/map_iris.hpp"
 #include "rdf/vocabulary.hpp"
 #include "sparql/query_engine.hpp"
@@ -60,6 +62,21 @@ std::vector<InventoryItem> thingsTyped(const mapping::MapReader& map, const std:
   return found;
 }
 
+/// Objects that are gone, with their parts and primitives.
+std::set<std::string> namesOfGone(const mapping::MapReader& map, const std::vector<bool>& is_gone) {
+  std::set<std::string> gone;
+  for (std::size_t i = 0; i < is_gone.size(); ++i) {
+    if (!is_gone[i]) continue;
+    const std::string object = rdf::iriOfObject(map.objects()[i].id);
+    gone.insert(object);
+    for (const Quad& quad : mapping::quadsAbout(map.quads(), object, rdf::vocabulary::kGraphObserved))
+      if (quad.predicate.text == rdf::vocabulary::clx("hasPart") ||
+          quad.predicate.text == rdf::vocabulary::clx("hasPrimitive"))
+        gone.insert(quad.object.text);
+  }
+  return gone;
+}
+
 }  // namespace
 
 std::vector<RegisterItem> registerItems(const mapping::MapReader& map, const InventoryParams& params,
@@ -70,6 +87,7 @@ std::vector<RegisterItem> registerItems(const mapping::MapReader& map, const Inv
   for (std::size_t i = 0; i < is_gone.size(); ++i) object_named[rdf::iriOfObject(map.objects()[i].id)] = i;
   std::set<std::string> classes;
   for (const RegisterEntry& entry : entries) classes.insert(entry.class_iri);
+  const std::set<std::string> gone = namesOfGone(map, is_gone);
   RegisterThings things;
   for (InventoryItem& item : inventoryOf(map, params)) things.add(std::move(item)).is_listed = true;
   for (const std::string& class_iri : classes) {
@@ -79,7 +97,7 @@ std::vector<RegisterItem> registerItems(const mapping::MapReader& map, const Inv
     for (InventoryItem& item : inventoryOf(map, of_class)) things.add(std::move(item)).classes.insert(class_iri);
     for (InventoryItem& item : thingsTyped(map, class_iri)) {
       const auto object = object_named.find(item.object);
-      if (object != object_named.end() && is_gone[object->second]) continue;
+      if (gone.contains(item.object)) continue;
       RegisterItem* known = things.find(item.object);
       if (known == nullptr)
         known = &things.add(object == object_named.end() ? std::move(item)

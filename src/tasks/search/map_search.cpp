@@ -145,14 +145,15 @@ SearchAnswer searchFor(const mapping::MapReader& map, const SearchRequest& reque
   const Eigen::Vector2d from = request.from.empty() ? lastStop(map) : placeNamed(map, request.from);
   const TerrainGrid terrain = terrainOf(map, request.ways.terrain);
   const PassableGrid grid = passableIn(map, terrain, request.ways);
+  const std::vector<bool> is_left_out = leftOut(map, request.ways);
   const std::vector<bool> is_gone = request.ways.with_gone ? std::vector<bool>(map.objects().size()) : goneAmong(map);
   SearchAnswer answer;
   answer.frame = grid.frame;
   answer.known = knownOf(map, ontology, class_iri, from, is_gone);
   answer.places = usualPlacesOf(ontology, class_iri, request.places);
-  const std::vector<PlaceEvidence> places = evidenceOf(map, terrain, ontology, answer.places);
+  const std::vector<PlaceEvidence> places = evidenceOf(map, terrain, ontology, answer.places, is_left_out);
   for (const PlaceEvidence& place : places) answer.reasons.push_back(place.near_class);
-  const SightGrid sight = sightOf(map, terrain, leftOut(map, request.ways), request.search.eye_m);
+  const SightGrid sight = sightOf(map, terrain, is_left_out, request.search.eye_m);
   const SearchField field = fieldOf(grid.frame, knownShare(map, terrain, sight, request.search), places);
   answer.stops = tourOf(grid, sight, field, from, request.search, request.tour);
   return answer;

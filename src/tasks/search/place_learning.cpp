@@ -85,6 +85,7 @@ void PlaceLearner::add(const mapping::MapReader& map) {
   terrain_params.cell_m = params_.cell_m;
   const TerrainGrid terrain = terrainOf(map, terrain_params);
   const std::vector<PlacedObject> objects = placedObjects(map, ontology);
+  const std::vector<bool> none_left_out(map.objects().size(), false);  // also what is gone now stood at its place
   ++maps_;
   std::vector<Example> examples(objects.size());
   std::set<std::string> near_classes;
@@ -92,7 +93,8 @@ void PlaceLearner::add(const mapping::MapReader& map) {
   for (const rdf::OntologyClass& known : ontology.classes)
     if (ontology.isA(known.iri, rdf::vocabulary::clx("Place"))) near_classes.insert(known.iri);
   for (const std::string& near_class : near_classes) {
-    const NearestMarked nearest = nearestMarked(terrain.frame, cellsWith(map, terrain, ontology, near_class));
+    const NearestMarked nearest =
+        nearestMarked(terrain.frame, cellsWith(map, terrain, ontology, near_class, none_left_out));
     std::vector<double> distance_m;
     for (std::size_t i = 0; i < objects.size(); ++i)
       distance_m.push_back(distanceTo(near_class, objects, i, terrain, nearest, ontology));

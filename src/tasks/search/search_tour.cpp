@@ -123,11 +123,13 @@ std::vector<SearchStop> tourOf(const PassableGrid& grid, const SightGrid& sight,
   std::uint32_t at = openCellNear(grid, from);
   StopCandidates candidates(sight, field, search.view_m, candidatesOf(grid, at, search.view_m));
   std::vector<SearchStop> stops;
-  double total_m = 0, so_far = 0;
+  constexpr double kLeastShare = 0.01;  // of what the best stop showed: a walk for less is not worth it
+  double total_m = 0, so_far = 0, largest = 0;
   while (stops.size() < params.max_stops) {
     const CheapestWays ways = cheapestWays(grid, at, {.is_priced = false});
     std::optional<SearchStop> best = candidates.best(ways, total_m, params);
-    if (!best) break;
+    largest = std::max(largest, best ? best->probability : 0);
+    if (!best || best->probability < kLeastShare * largest) break;
     candidates.take(*best, ways, params);
     best->way = wayTo(ways, best->cell);
     total_m = best->total_m;

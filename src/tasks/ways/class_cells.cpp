@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <set>
 
+#include "rdf/map_iris.hpp"
 #include "rdf/vocabulary.hpp"
 #include "rdf/wkt_reader.hpp"
 #include "sparql/query_engine.hpp"
@@ -41,18 +43,26 @@ void markLines(const GridFrame& frame, std::string_view wkt, std::vector<std::ui
 }  // namespace
 
 std::vector<std::uint8_t> cellsWith(const mapping::MapReader& map, const TerrainGrid& terrain,
-                                    const rdf::OntologyView& ontology, const std::string& class_iri) {
+                                    const rdf::OntologyView& ontology, const std::string& class_iri,
+                                    const std::vector<bool>& is_left_out) {
   std::vector<std::uint8_t> marked(terrain.frame.size(), 0);
   for (std::uint32_t cell = 0; cell < terrain.frame.size(); ++cell)
     for (const std::uint32_t thing : terrain.thingsIn(cell))
-      if (thing != kUnnamedThing && ontology.isA(map.objects()[thing].class_iri, class_iri)) marked[cell] = 1;
+      if (thing != kUnnamedThing && !is_left_out[thing] && ontology.isA(map.objects()[thing].class_iri, class_iri))
+        marked[cell] = 1;
   // A place stands where its members stand.
-  const std::string query = "PREFIX clx: <" + std::string(rdf::vocabulary::kClx) + "> SELECT ?x ?y { ?o a <" +
-                            class_iri + "> . { ?o clx:x ?x ; clx:y ?y } UNION { ?o clx:hasMember ?m . " +
-                            "?m clx:x ?x ; clx:y ?y } }";
+  const std::string query = "PREFIX clx: <" + std::string(rdf::vocabulary::kClx) + "> SELECT ?x ?y ?thing { ?o a <" +
+                            class_iri +
+                            "> . { ?o clx:x ?x ; clx:y ?y BIND(?o AS ?thing) } UNION "
+                            "{ ?o clx:hasMember ?thing . ?thing clx:x ?x ; clx:y ?y } }";
   const sparql::ResultTable places = sparql::evaluateQuery(map.quads(), query).table;
-  for (std::size_t row = 0; row < places.row_count; ++row)
-    if (const auto cell = terrain.frame.cellAt({numberIn(places, row, 0), numberIn(places, row, 1)})) marked[*cell] = 1;
+  std::set<std::string> left_out;
+  for (std::size_t i = 0; i < is_left_out.size(); ++i)
+    if (is_left_out[i]) left_out.insert(rdf::iriOfObject(map.objects()[i].id));
+  for (std::size_t row = 0; row < places.row_count; ++row) {
+    const auto cell = terrain.frame.cellAt({numberIn(places, row, 0), numberIn(places, row, 1)});
+    if (cell && !left_out.contains(places.at(row, 2)->text)) marked[*cell] = 1;
+  }
   const sparql::ResultTable lines = sparql::evaluateQuery(map.quads(), linesQuery(class_iri)).table;
   for (std::size_t row = 0; row < lines.row_count; ++row)
     if (const Term* wkt = lines.at(row, 0)) markLines(terrain.frame, wkt->text, marked);

@@ -11,8 +11,10 @@ namespace cluxel::tasks {
 
 namespace {
 
-/// What stands out by less is part of the slope: heights of cells are wrong by a centimetre.
-constexpr float kLeastStep_m = 0.025F;
+/// What stands out by less is part of the slope. Heights of cells are wrong by a centimetre, and rises by more.
+constexpr float kLeastStep_m = 0.05F;
+/// No step is looked for where the ground rises by less.
+constexpr float kLeastRise_m = 0.01F;
 
 /// The cells of one line, in the order of their x or y.
 class LineRelief {
@@ -22,14 +24,20 @@ class LineRelief {
         per_half_metre_(std::max(1, static_cast<int>(std::lround(0.5 / cell_m_)))),
         rises_(count > 0 ? static_cast<std::size_t>(count - 1) : 0, 0.0F),
         is_known_(rises_.size(), 0),
-        steps_(rises_.size(), 0.0F) {
+        steps_(rises_.size(), 0.0F),
+        slopes_(rises_.size(), 0.0F) {
     for (std::size_t i = 0; i < rises_.size(); ++i) {
       const std::uint32_t a = first + static_cast<std::uint32_t>(i) * pitch, b = a + pitch;
       is_known_[i] = terrain.seen[a] != 0 && terrain.seen[b] != 0 ? 1 : 0;
       if (is_known_[i] != 0) rises_[i] = terrain.height[b] - terrain.height[a];
     }
-    for (int length = 1; length <= per_half_metre_; ++length)
-      for (int begin = 0; begin + length <= size(); ++begin) findStep(begin, length);
+    for (int begin = 0; begin < size(); ++begin) {
+      float rise = 0;
+      for (int end = begin + 1; end <= std::min(size(), begin + per_half_metre_) && is_known_[end - 1] != 0; ++end) {
+        rise += rises_[end - 1];
+        if (std::abs(rise) > kLeastRise_m) findStep(begin, end, rise);
+      }
+    }
   }
 
   /// Between cell `i` of the line and the next [m, upwards].
@@ -50,51 +58,45 @@ class LineRelief {
  private:
   int size() const { return static_cast<int>(rises_.size()); }
 
-  float withoutStep(int i) const {
-    if (std::abs(steps_[i]) <= kLeastStep_m) return rises_[i];
-    const float rest = rises_[i] - steps_[i];
-    return (rest > 0) == (rises_[i] > 0) ? rest : 0.0F;
-  }
+  float withoutStep(int i) const { return std::abs(steps_[i]) > kLeastStep_m ? slopes_[i] : rises_[i]; }
 
-  /// How the ground rises from cell to cell beside a stretch: at its next neighbour, or the median of three where cells
-  /// are small. 0 where it is not known.
-  float riseBeside(int nearest, int direction) const {
-    std::array<float, 3> rises{};
-    const int wanted = per_half_metre_ > 3 ? 3 : 1;
-    int count = 0;
-    for (int i = nearest; count < wanted && i >= 0 && i < size() && is_known_[i] != 0; i += direction)
+  /// Adds how the ground rises from cell to cell beside a stretch, on one side of it: at the nearest place, the median
+  /// of three, and where cells are small the mean of four. Nothing where it is not known.
+  void addBeside(int nearest, int direction, float& low, float& high) const {
+    std::array<float, 4> rises{};
+    std::size_t count = 0;
+    for (int i = nearest; count < rises.size() && i >= 0 && i < size() && is_known_[i] != 0; i += direction)
       rises[count++] = rises_[i];
-    if (count < 3) return count == 0 ? 0.0F : rises[0];
-    std::sort(rises.begin(), rises.end());
-    return rises[1];
+    const auto add = [&](float rise) { low = std::min(low, rise), high = std::max(high, rise); };
+    if (count > 0) add(rises[0]);
+    if (count == rises.size() && per_half_metre_ >= 4) add((rises[0] + rises[1] + rises[2] + rises[3]) / 4);
+    if (count >= 3) add(std::max(std::min(rises[0], rises[1]), std::min(std::max(rises[0], rises[1]), rises[2])));
   }
 
-  /// What the rise over some neighbours is more than a slope like those on either side explains.
-  void findStep(int begin, int length) {
-    const int end = begin + length;
-    float rise = 0, largest = 0;
-    for (int i = begin; i < end; ++i) {
-      if (is_known_[i] == 0) return;
-      rise += rises_[i];
-    }
-    const float before = riseBeside(begin - 1, -1), after = riseBeside(end, 1);
-    const float low = std::min({0.0F, before, after}), high = std::max({0.0F, before, after});
-    const auto number = static_cast<float>(length);
-    const float step = rise - std::clamp(rise, low * number, high * number);
+  /// What `rise`, over some neighbours, is more than a slope like those on either side explains.
+  void findStep(int begin, int end, float rise) {
+    float low = 0, high = 0, largest = 0;  // of rises from cell to cell that a slope explains
+    addBeside(begin - 1, -1, low, high);
+    addBeside(end, 1, low, high);
+    const auto length = static_cast<float>(end - begin);
+    const float step = rise - std::clamp(rise, low * length, high * length);
     if (step == 0) return;
     const auto part = [&](int i) { return (rises_[i] - std::clamp(rises_[i], low, high)) * (step > 0 ? 1.0F : -1.0F); };
     for (int i = begin; i < end; ++i) largest = std::max(largest, part(i));
     // It is where most of it is. Two cells may share it equally.
     constexpr float equal_share = 0.75F;
-    for (int i = begin; i < end; ++i)
-      if (part(i) >= equal_share * largest && std::abs(step) > std::abs(steps_[i])) steps_[i] = step;
+    for (int i = begin; i < end; ++i) {
+      if (part(i) < equal_share * largest || std::abs(step) <= std::abs(steps_[i])) continue;
+      steps_[i] = step;
+      slopes_[i] = std::clamp(rises_[i], low, high);
+    }
   }
 
   double cell_m_;
   int per_half_metre_;
   std::vector<float> rises_;            ///< from each cell to the next [m]
   std::vector<std::uint8_t> is_known_;  ///< of rises
-  std::vector<float> steps_;
+  std::vector<float> steps_, slopes_;   ///< of each rise: the step in it, and what is left without it
 };
 
 }  // namespace

@@ -16,7 +16,8 @@ struct GroundRelief {
   std::vector<float> step_north;  ///< the same to the neighbour with the next y
 };
 
-/// Neither slopes nor steps are told where the ground of a cell, or of its neighbour, was not observed. Cost: linear.
+/// Neither slopes nor steps are told where the ground of a cell, or of its neighbour, was not observed. A step of less
+/// than 5 cm counts for the slope, too. Cost: O(cells times those of half a metre).
 GroundRelief reliefOf(const TerrainGrid& terrain);
 
 }  // namespace cluxel::tasks

@@ -130,8 +130,9 @@ class LowPoints {
     for (std::uint32_t cell = 0; cell < frame_.size(); ++cell) {
       constexpr std::size_t enough = 3;
       heights.clear();
-      for (int ring = 0; ring <= reach && heights.size() < enough && grid.seen[cell] != 0; ++ring)
-        heightsWithin(cell, ring, heights);
+      if (grid.seen[cell] == 0) continue;
+      const Eigen::Vector2f slope(slopeOf(cell, 1, 0), slopeOf(cell, 0, 1));
+      for (int ring = 0; ring <= reach && heights.size() < enough; ++ring) heightsWithin(cell, ring, slope, heights);
       if (heights.size() < enough) continue;
       const auto middle = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 2);
       std::nth_element(heights.begin(), middle, heights.end());
@@ -146,19 +147,19 @@ class LowPoints {
   };
 
   /// Of the cells up to `ring` columns and rows away.
-  void heightsWithin(std::uint32_t cell, int ring, std::vector<float>& heights) const {
+  void heightsWithin(std::uint32_t cell, int ring, const Eigen::Vector2f& slope, std::vector<float>& heights) const {
     heights.clear();
     const int x = frame_.columnOf(cell), y = frame_.rowOf(cell);
     const int left = std::max(0, x - ring), right = std::min(frame_.columns - 1, x + ring);
     const Eigen::Vector2f middle = (frame_.centreOf(cell) - Eigen::Vector2d(frame_.min_x, frame_.min_y)).cast<float>();
-    const Eigen::Vector2f slope(slopeOf(x, y, 1, 0), slopeOf(x, y, 0, 1));
     for (int row = std::max(0, y - ring); row <= std::min(frame_.rows - 1, y + ring); ++row)
       for (std::uint32_t i = first_[frame_.index(left, row)]; i < first_[frame_.index(right, row) + 1]; ++i)
         heights.push_back(points_[i].place.z() - slope.dot(points_[i].place.head<2>() - middle));
   }
 
   /// Of the surface over two metres, as far as there is one.
-  float slopeOf(int x, int y, int dx, int dy) const {
+  float slopeOf(std::uint32_t cell, int dx, int dy) const {
+    const int x = frame_.columnOf(cell), y = frame_.rowOf(cell);
     const int reach = std::max(1, static_cast<int>(std::lround(1 / frame_.cell_m)));
     const auto end = [&](int direction) {
       int last = 0;

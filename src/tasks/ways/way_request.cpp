@@ -36,18 +36,19 @@ class ObjectSelector {
   }
 
   /// Throws Error (NotFound) where there is nothing of it.
-  std::vector<std::uint8_t> cells(const std::string& name, const TerrainGrid& terrain) const {
+  std::vector<std::uint8_t> cells(const std::string& name, const TerrainGrid& terrain,
+                                  const std::vector<bool>& is_left_out) const {
     std::vector<std::uint8_t> cells(terrain.frame.size(), 0);
     if (isMobility(name)) {
       std::vector<bool> marked(map_.objects().size(), false);
       mark(name, marked);
       for (std::uint32_t cell = 0; cell < cells.size(); ++cell)
         for (const std::uint32_t thing : terrain.thingsIn(cell))
-          if (thing != kUnnamedThing && marked[thing]) cells[cell] = 1;
+          if (thing != kUnnamedThing && marked[thing] && !is_left_out[thing]) cells[cell] = 1;
     } else {
       const std::string iri = classNamed(ontology_, name);
       const bool is_surface = ontology_.isA(iri, rdf::vocabulary::clx("Surface"));  // one walks on it
-      cells = is_surface ? terrain.seen : cellsWith(map_, terrain, ontology_, iri);
+      cells = is_surface ? terrain.seen : cellsWith(map_, terrain, ontology_, iri, is_left_out);
     }
     if (std::find(cells.begin(), cells.end(), 1) == cells.end())
       throw Error(ErrorKind::NotFound, "the map holds nothing of " + name + " that a way could stay near");
@@ -149,8 +150,9 @@ PassableGrid passableIn(const mapping::MapReader& map, const WayRequest& request
 
 PassableGrid passableIn(const mapping::MapReader& map, const TerrainGrid& terrain, const WayRequest& request) {
   std::vector<std::uint8_t> near;
-  if (!request.near.empty()) near = ObjectSelector(map).cells(request.near, terrain);
-  return passableOf(terrain, request.params, leftOut(map, request), near);
+  const std::vector<bool> is_left_out = leftOut(map, request);
+  if (!request.near.empty()) near = ObjectSelector(map).cells(request.near, terrain, is_left_out);
+  return passableOf(terrain, request.params, is_left_out, near);
 }
 
 Eigen::Vector2d placeNamed(const mapping::MapReader& map, const std::string& text) {
@@ -166,7 +168,8 @@ Eigen::Vector2d placeNamed(const mapping::MapReader& map, const std::string& tex
   const std::string name = is_bracketed ? text.substr(1, text.size() - 2) : text;
   const std::size_t slash = name.rfind('/');
   const std::string path = slash == std::string::npos ? std::string() : name.substr(0, slash + 1);
-  const bool is_of_object = path.empty() || path == "object/" || path == rdf::mapIri("object", "");
+  const bool is_of_object =
+      path.empty() || path == "object/" || path == "map:object/" || path == rdf::mapIri("object", "");
   const std::string digits = is_of_object ? name.substr(path.size()) : std::string();
   std::vector<std::string> found;
   for (std::size_t i = 0; i < map.objects().size(); ++i) {
