@@ -11,7 +11,8 @@ namespace cluxel::mapping {
 using perception::kEndOfRows;
 using perception::rowOf;
 
-ScanBands::ScanBands(const rdf::ReadTransaction& transaction, PointChanges changes, std::uint64_t max_points,
+ScanBands::ScanBands(const rdf::ReadTransaction& transaction, PointChanges changes,
+                     const std::map<perception::TileKey, std::uint64_t>& points_there, std::uint64_t max_points,
                      unsigned threads)
     : transaction_(transaction),
       changes_(std::move(changes)),
@@ -21,6 +22,7 @@ ScanBands::ScanBands(const rdf::ReadTransaction& transaction, PointChanges chang
   for (const auto& [tile, segments] : changes_.added)
     for (const perception::ScanSegment& segment : segments) points_of_row_[rowOf(tile, axis_)] += segment.size();
   for (const auto& [tile, points] : changes_.stored_points) points_of_row_[rowOf(tile, axis_)] += points;
+  for (const auto& [tile, points] : points_there) points_of_row_[rowOf(tile, axis_)] += points;
   for (const auto& [scan, first] : changes_.stored) scans_.emplace(rowOf(first, axis_), scan);
 }
 

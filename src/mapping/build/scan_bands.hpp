@@ -13,9 +13,11 @@ namespace cluxel::mapping {
 /// Unpacks each scan once, when the first band comes to it. What it has in later bands stays in memory until then.
 class ScanBands final : public perception::PointBands {
  public:
-  /// `changes`: with stored scans. A band has rows with `max_points` points or more. `transaction` must outlive it, and
-  /// keep its scans.
-  ScanBands(const rdf::ReadTransaction& transaction, PointChanges changes, std::uint64_t max_points, unsigned threads);
+  /// A band has rows with `max_points` points or more, of `changes` and of `points_there`, which the tiles had before.
+  /// `transaction` must outlive it, and keep its scans.
+  ScanBands(const rdf::ReadTransaction& transaction, PointChanges changes,
+            const std::map<perception::TileKey, std::uint64_t>& points_there, std::uint64_t max_points,
+            unsigned threads);
 
   perception::Axis axis() const override { return axis_; }
   perception::PointBand next() override;

@@ -196,6 +196,16 @@ void giveUp(perception::TileOutputs& outputs, const std::function<bool(const Til
   eraseOf(outputs.features), eraseOf(outputs.labels), eraseOf(outputs.components), eraseOf(outputs.contacts);
 }
 
+/// About how many points the tiles have in the map; none for new ones.
+std::map<TileKey, std::uint64_t> pointsIn(const rdf::ReadTransaction& transaction, const TileSet& tiles) {
+  constexpr std::uint64_t kPointsOfCluxel = 12;
+  std::map<TileKey, std::uint64_t> points;
+  for (const TileKey& tile : tiles)
+    if (const auto block = transaction.block(tables::kSummaries, tables::keyOf(tile)))
+      points.emplace(tile, kPointsOfCluxel * perception::cluxelsIn(*block));
+  return points;
+}
+
 class StageProgress final : public perception::StageObserver {
  public:
   explicit StageProgress(ProgressSink& sink) : sink_(sink) {}
@@ -242,11 +252,14 @@ TileSet TileStages::run(rdf::WriteTransaction& transaction, PointChanges changes
                                        .anew = changes.anew,
                                        .compute_anew = compute_anew,
                                        .donor = donor ? &*donor : nullptr};
+  const std::map<TileKey, std::uint64_t> points_there = pointsIn(transaction, without(changes.tiles(), changes.anew));
+  std::uint64_t points = 0;
+  for (const auto& [tile, count] : points_there) points += count;
   TileSet changed;
-  if (changes.stored.empty()) {
+  if (changes.stored.empty() && (donor || points < max_points_)) {
     changed = runStages(std::move(changes.added), labeller_, params_, outputs_, options);
   } else {
-    ScanBands bands(transaction, std::move(changes), max_points_ / 2, threads);
+    ScanBands bands(transaction, std::move(changes), points_there, max_points_ / 2, threads);
     changed = runStages(bands, labeller_, params_, outputs_, options);
   }
   storeTiles(transaction, store.tiles());

@@ -34,8 +34,8 @@ struct OutputChanges {
 /// `model` and `params` must outlive it.
 class TileStages {
  public:
-  /// What has more than 1.5 times `max_points` points goes through the stages in bands. Each band but the last has half
-  /// of `max_points` points or more.
+  /// What has more than 1.5 times `max_points` points goes through the stages in bands, and so does what touches tiles
+  /// that hold `max_points` or more. Each band but the last has half of `max_points` points or more.
   TileStages(const perception::LabelModel& model, const MapParams& params, Keep keep = Keep::All,
              std::uint64_t max_points = kStagePoints)
       : params_{params.labelling, params.component, params.contact, params.relation},
