@@ -57,7 +57,7 @@ class Registration {
   /// Gauss-Newton over all pairs, with points matched anew in each round. `outcomes`: of the last round.
   Poses fine(const std::vector<ScanPair>& pairs, const Poses& given, Poses poses,
              std::vector<PairOutcome>& outcomes) const {
-    constexpr std::size_t kMaxRounds = 40;  // some ten where all fits
+    constexpr std::size_t kMaxRounds = 40;
     constexpr double kFirstReach_m = 0.5, kReach_m = 0.3, kSettled_m = 0.0005;
     for (std::size_t round = 0; round < kMaxRounds; ++round) {
       sink_->progress("join", round + 1, kMaxRounds);
