@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "base/nearest_name.hpp"
 #include "cluxel/error.hpp"
+#include "tasks/finite_number.hpp"
 
 namespace cluxel::tasks {
 
@@ -18,13 +18,6 @@ namespace {
 
 [[noreturn]] void refuseValue(const std::string& name, const std::string& why) {
   throw Error(ErrorKind::InvalidArgument, "parameter " + name + ": " + why);
-}
-
-std::optional<double> finiteNumber(const std::string& text) {
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  const bool is_read = error == std::errc() && end == text.data() + text.size() && std::isfinite(value);
-  return is_read ? std::optional(value) : std::nullopt;
 }
 
 std::string shortNumber(double value) {

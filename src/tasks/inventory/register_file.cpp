@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reads registers and streets: CSV and GeoJSON.
-#include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -11,6 +10,7 @@
 #include "cluxel/error.hpp"
 #include "rdf/vocabulary.hpp"
 #include "tasks/export/proj_geo_reference.hpp"
+#include "tasks/finite_number.hpp"
 #include "tasks/inventory/register.hpp"
 #include "tasks/ways/route.hpp"
 
@@ -62,14 +62,6 @@ std::vector<std::string> csvFields(const std::string& line) {
   return fields;
 }
 
-std::optional<double> registerNumber(std::string_view written) {
-  const std::string_view text = trimmed(written);
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  const bool is_read = error == std::errc() && end == text.data() + text.size() && std::isfinite(value);
-  return is_read ? std::optional(value) : std::nullopt;
-}
-
 /// The columns of a CSV by name; npos when there is none.
 struct CsvHeader {
   std::vector<std::string> names;
@@ -93,7 +85,7 @@ class EntryReader {
       addFault(place, error.what(), "");
     }
     if (trimmed(height).empty()) return;
-    entry.height_m = registerNumber(height);
+    entry.height_m = finiteNumber(trimmed(height));
     if (!entry.height_m)
       addFault(place, "the height '" + std::string(height) + "' is no number", "write metres with a point, or nothing");
   }
@@ -134,7 +126,7 @@ std::vector<RegisterEntry> readCsvRegister(const std::filesystem::path& file, co
     if (fields.size() == 1 && fields[0].empty()) continue;
     const auto field = [&](std::size_t column) { return column < fields.size() ? fields[column] : std::string(); };
     const Diagnostic here{Severity::Error, {file.string(), number, 1, std::nullopt}, "", "", line};
-    const auto px = registerNumber(field(x)), py = registerNumber(field(y));
+    const auto px = finiteNumber(trimmed(field(x))), py = finiteNumber(trimmed(field(y)));
     if (!px || !py || trimmed(field(kind)).empty()) {
       reader.addFault(here, "the line has no class or no place", "write numbers with a point");
       continue;

@@ -2,7 +2,6 @@
 // A search in a map: usual places of the ontology, objects that are there, and the tour.
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -15,6 +14,7 @@
 #include "rdf/ontology/ontology.hpp"
 #include "rdf/vocabulary.hpp"
 #include "sparql/query_engine.hpp"
+#include "tasks/finite_number.hpp"
 #include "tasks/query_source.hpp"
 #include "tasks/search/search_tour.hpp"
 
@@ -56,16 +56,6 @@ Eigen::Vector2d lastStop(const mapping::MapReader& map) {
 
 namespace {
 
-/// The whole text as a finite number.
-std::optional<double> numberOfPlace(const Term* term) {
-  std::string_view text = term == nullptr ? std::string_view() : trimmed(term->text);
-  if (text.starts_with('+')) text.remove_prefix(1);
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
-  return value;
-}
-
 /// clx:Name for an IRI of the vocabulary, so that messages suggest names.
 std::string shortClass(const std::string& iri) {
   return iri.starts_with(rdf::vocabulary::kClx) ? "clx:" + iri.substr(rdf::vocabulary::kClx.size()) : iri;
@@ -80,7 +70,7 @@ rdf::UsualPlace placeInRow(const rdf::OntologyView& ontology, const sparql::Resu
   };
   const auto number = [&](std::size_t column, const char* name, double most, const char* wanted) {
     const Term* term = table.at(row, column);
-    const std::optional<double> value = numberOfPlace(term);
+    const auto value = term == nullptr ? std::nullopt : finiteNumber(trimmed(term->text));
     if (value && *value > 0 && *value <= most) return *value;
     addFault(term == nullptr ? "it has no " + std::string(name) : std::string(name) + " is '" + term->text + "'",
              wanted);

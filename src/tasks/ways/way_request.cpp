@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What names mean in a request for ways: classes, mobilities, places.
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 #include "base/ascii.hpp"
@@ -10,6 +9,7 @@
 #include "rdf/map_iris.hpp"
 #include "rdf/ontology/ontology.hpp"
 #include "rdf/vocabulary.hpp"
+#include "tasks/finite_number.hpp"
 #include "tasks/ways/class_cells.hpp"
 #include "tasks/ways/route.hpp"
 
@@ -61,13 +61,6 @@ class ObjectSelector {
   const mapping::MapReader& map_;
   rdf::OntologyView ontology_;
 };
-
-std::optional<double> finiteNumber(std::string_view text) {
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  const bool is_read = error == std::errc() && end == text.data() + text.size() && std::isfinite(value);
-  return is_read ? std::optional(value) : std::nullopt;
-}
 
 Eigen::Vector2d centroidOf(const mapping::MapReader& map, const std::string& iri) {
   const rdf::QuadReader& quads = map.quads();
