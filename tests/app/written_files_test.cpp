@@ -25,15 +25,18 @@ TEST_F(Program, NoOutputReplacesAMap) {
            "view " + map + " -o " + copyTo("of_a_map_page.html"),
            "info " + map + " --html " + copyTo("of_a_map_figures.html"),
            "state " + map + " --export " + copyTo("of_a_map_statements.ttl"),
+           "dump " + map + " -o " + copyTo("of_a_map_dump.nq"),
+           "rules try " + map + " outdoor.rules.yaml --ply " + copyTo("of_a_map_changes.ply"),
            "serve " + map + " --port 0 --log " + copyTo("of_a_map_log.txt"),
            "rules doc outdoor.rules.yaml -o " + copyTo("of_a_map_rules.md"),
        }) {
     SCOPED_TRACE(arguments);
     expectError(run(arguments), 5, "is a map, which the output would replace");
   }
-  for (const char* name : {"of_a_map_other.pgm", "of_a_map_site.yaml", "of_a_map_linked.clx", "of_a_map_places.ttl",
-                           "of_a_map_report.xml", "of_a_map_poses.yaml", "of_a_map_quads.nq", "of_a_map_page.html",
-                           "of_a_map_figures.html", "of_a_map_statements.ttl", "of_a_map_rules.md", "of_a_map_log.txt"})
+  for (const char* name :
+       {"of_a_map_other.pgm", "of_a_map_site.yaml", "of_a_map_linked.clx", "of_a_map_places.ttl", "of_a_map_report.xml",
+        "of_a_map_poses.yaml", "of_a_map_quads.nq", "of_a_map_page.html", "of_a_map_figures.html",
+        "of_a_map_statements.ttl", "of_a_map_rules.md", "of_a_map_log.txt", "of_a_map_dump.nq", "of_a_map_changes.ply"})
     EXPECT_EQ(readFile(path(name)), bytes) << name;
   EXPECT_FALSE(fs::exists(path("of_a_map_site.pgm"))) << "an image without its frame";
 }

@@ -3,11 +3,11 @@
 #include <cstdio>
 
 #include "app/command.hpp"
+#include "app/shared_options.hpp"
 #include "base/file_pieces.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/change/rdf_loading.hpp"
 #include "rdf/file/environment.hpp"
-#include "rdf/file/map_check.hpp"
 #include "rdf/io/rdf_io.hpp"
 
 namespace cluxel::app {
@@ -55,10 +55,7 @@ ExitCode dump(const DumpOptions& options) {
     writeStoredNQuads(quads, graph, [](std::string_view line) { std::fwrite(line.data(), 1, line.size(), stdout); });
     return ExitCode::Done;
   }
-  std::error_code ignored;
-  if (fs::is_regular_file(options.output, ignored) && rdf::looksLikeMap(options.output))
-    throw Error(ErrorKind::StoreUnavailable,
-                options.output.string() + ": is a map or store, which the dump would replace; name another file");
+  refuseToReplaceMap(options.output);
   writeFileInPieces(options.output, [&](const auto& take) { writeStoredNQuads(quads, graph, take); });
   return ExitCode::Done;
 }

@@ -2,9 +2,7 @@
 // `cluxel rules try` and `cluxel rules diff`: what would change in a map under other rules. The map is not changed.
 #include "app/command.hpp"
 #include "app/shared_options.hpp"
-#include "cluxel/error.hpp"
 #include "mapping/facts/map_oracle.hpp"
-#include "rdf/file/map_check.hpp"
 #include "rules/language/rule_loader.hpp"
 #include "tasks/rule_trial/rule_difference.hpp"
 
@@ -33,16 +31,8 @@ ExitCode report(const TrialOptions& options, const mapping::MapReader& map, cons
   return difference.isEmpty() ? ExitCode::Done : ExitCode::NegativeFinding;
 }
 
-/// A map can take days to build, and `--ply MAP` is easily written by mistake.
-void refuseMapAsPly(const fs::path& ply) {
-  std::error_code ignored;
-  if (!ply.empty() && fs::is_regular_file(ply, ignored) && rdf::looksLikeMap(ply))
-    throw Error(ErrorKind::InvalidArgument,
-                "--ply " + ply.string() + ": is a map, which would be replaced; name another file");
-}
-
 ExitCode compareRules(const TrialOptions& options, Session& session) {
-  refuseMapAsPly(options.ply);
+  refuseToReplaceMap(options.ply);
   const mapping::MapReader map(options.map);
   const rules::RuleSet after = loadFor(map, options.after, session);
   if (options.before.empty()) return report(options, map, tasks::trialOf(map, after), session);
