@@ -56,7 +56,7 @@ Eigen::Isometry3d poseOf(const ScanFile& file, ParsedScan& parsed) {
   if (parsed.local_origin.isZero(0)) return file.T_map_sensor;
   const Eigen::Vector3d local_origin = toMetresZUp(parsed.local_origin, file.frame);
   if (!file.has_pose) return file.T_map_sensor * Eigen::Translation3d(local_origin);
-  moveToSensor(parsed.points, local_origin, file.path);  // its unit is small
+  moveToSensor(parsed.points, local_origin, file.path);  // 4096 millimetres are near
   return file.T_map_sensor;
 }
 

@@ -106,12 +106,12 @@ bool areCompared(const scan::PoseRegistration& report) {
                      [&](const scan::RefinedScan& scan) { return scan.group == report.scans.front().group; });
 }
 
-/// Which scans no measured pair joins to the first, for the reader.
+/// Names the scans that no measured pairs join to the first.
 void printNotCompared(const scan::PoseRegistration& report, const scan::ScanSet& set) {
   for (const scan::RefinedScan& scan : report.scans)
     if (scan.group != report.scans.front().group)
-      std::printf("%s could not be compared with %s, also not by way of others: it may be far off\n",
-                  set.file(scan.index).path.c_str(), set.file(report.scans.front().index).path.c_str());
+      std::printf("no measured pairs join %s to %s: its pose may be wrong\n", set.file(scan.index).path.c_str(),
+                  set.file(report.scans.front().index).path.c_str());
 }
 
 ExitCode checkPoses(const RegisterOptions& options, const scan::ScanSet& set, Session& session) {

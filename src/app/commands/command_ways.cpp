@@ -8,7 +8,6 @@
 #include "app/map_condition.hpp"
 #include "app/shared_options.hpp"
 #include "cluxel/error.hpp"
-#include "rdf/file/map_check.hpp"
 #include "tasks/search/place_learning.hpp"
 #include "tasks/search/search_tour.hpp"
 #include "tasks/ways/cost_map.hpp"
@@ -67,13 +66,13 @@ ExitCode route(const WayArguments& arguments, Session& session) {
 ExitCode reach(const WayArguments& arguments, Session& session) {
   const mapping::MapReader map = openMap(arguments, session);
   const Eigen::Vector2d from = tasks::placeNamed(map, arguments.from);
-  const tasks::PassableGrid grid = passableIn(map, arguments.request);
+  const tasks::TerrainGrid terrain = terrainOf(map, arguments.request.terrain);
+  const tasks::PassableGrid grid = passableIn(map, terrain, arguments.request);
   const double reach_m = arguments.minutes * 60 * arguments.speed_m_s;
   const std::vector<double> walk_m = walkLengths(grid, from, reach_m);
   const auto cells = std::count_if(walk_m.begin(), walk_m.end(), [](double length) { return std::isfinite(length); });
   const double area_m2 = static_cast<double>(cells) * grid.frame.cell_m * grid.frame.cell_m;
-  const auto reached =
-      objectsWithin(terrainOf(map, arguments.request.terrain), walk_m, leftOut(map, arguments.request));
+  const auto reached = objectsWithin(terrain, walk_m, leftOut(map, arguments.request));
   if (session.json) {
     print(reachJson(map, reached, area_m2, arguments.speed_m_s));
     return ExitCode::Done;

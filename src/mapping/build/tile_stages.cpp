@@ -198,7 +198,7 @@ void giveUp(perception::TileOutputs& outputs, const std::function<bool(const Til
 
 /// About how many points the tiles have in the map; none for new ones.
 std::map<TileKey, std::uint64_t> pointsIn(const rdf::ReadTransaction& transaction, const TileSet& tiles) {
-  constexpr std::uint64_t kPointsOfCluxel = 12;
+  constexpr std::uint64_t kPointsOfCluxel = 12;  // generated campuses: 6.3 million points, 523 thousand cluxels
   std::map<TileKey, std::uint64_t> points;
   for (const TileKey& tile : tiles)
     if (const auto block = transaction.block(tables::kSummaries, tables::keyOf(tile)))

@@ -205,7 +205,8 @@ std::string textOf(const Lesson& lesson) {
   if (!lesson.takesTheObject())
     text += "of the " + std::to_string(static_cast<std::size_t>(lesson.points)) + " points of the object only " +
             std::to_string(static_cast<std::size_t>(lesson.kept_points)) + " belong to " +
-            rules::withArticle(lesson.class_name) + " then: the rule takes what it was made from first\n";
+            rules::withArticle(lesson.class_name) +
+            " then: the new rule takes the pieces that the object grew from, not what was joined to them\n";
   if (lesson.changesNothingElse())
     text += "nothing else changes\n";
   else if (lesson.difference.changes.size() > 1)
