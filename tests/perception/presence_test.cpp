@@ -32,28 +32,78 @@ TEST(Presence, ScansOfOneTimeSpeakTogether) {
   EXPECT_EQ(history[1].time_s, 2);
 }
 
-TEST(Presence, IsTheIntervalOfLargestSum) {
+struct Times {
+  std::size_t begin = 0, end = 0;
+  double sum = 0;
+};
+
+/// The scans in [from, to) with the largest sum, by trying all.
+Times largestIn(const std::vector<ScanVotes>& history, std::size_t from, std::size_t to, const Visibility& thing) {
+  Times best;
+  for (std::size_t begin = from; begin < to; ++begin)
+    for (std::size_t end = begin + 1; end <= to; ++end) {
+      const double sum =
+          logOddsOfPresence(std::span(history).subspan(begin, end - begin), thing.share_of_hits, PresenceParams{});
+      if (sum > best.sum) best = {begin, end, sum};
+    }
+  return best;
+}
+
+TEST(Presence, GoesFromTheFirstToTheLastIntervalThatSpeaksForIt) {
   std::mt19937 random(11);
+  std::size_t several = 0;
   for (int round = 0; round < 300; ++round) {
     std::vector<ScanVotes> history;
     const std::size_t count = 1 + random() % 9;
     for (std::size_t i = 0; i < count; ++i)
-      history.push_back(votes(static_cast<double>(i), random() % 3 == 0 ? random() % 20 : 0, random() % 30));
+      history.push_back(votes(static_cast<double>(i), random() % 3 == 0 ? random() % 20 : 0, 1 + random() % 30));
     const Visibility thing = visibilityOf(history);
-    double best = 0;
-    for (std::size_t begin = 0; begin < count; ++begin)
-      for (std::size_t end = begin + 1; end <= count; ++end)
-        best =
-            std::max(best, logOddsOfPresence(std::span(history).subspan(begin, end - begin), thing.share_of_hits, {}));
+    const Times best = largestIn(history, 0, count, thing);
     const auto presence = presenceOf(history, thing, {});
-    ASSERT_EQ(presence.has_value(), best > 0);
+    ASSERT_EQ(presence.has_value(), best.sum > 0);
     if (!presence) continue;
-    const auto begin = static_cast<std::size_t>(presence->first_seen_s);
-    const auto end = static_cast<std::size_t>(presence->last_seen_s) + 1;
-    EXPECT_NEAR(logOddsOfPresence(std::span(history).subspan(begin, end - begin), thing.share_of_hits, {}), best, 1e-9);
+    const double decided = PresenceParams{}.decided;
+    std::size_t begin = best.begin, end = best.end;
+    for (Times next = largestIn(history, end, count, thing); next.sum >= decided;
+         next = largestIn(history, end, count, thing))
+      end = next.end;
+    for (Times next = largestIn(history, 0, begin, thing); next.sum >= decided;
+         next = largestIn(history, 0, begin, thing))
+      begin = next.begin;
+    several += begin < best.begin || end > best.end ? 1 : 0;
+    ASSERT_EQ(presence->first_seen_s, static_cast<double>(begin));
+    ASSERT_EQ(presence->last_seen_s, static_cast<double>(end - 1));
     EXPECT_TRUE(history[begin].hits.any());
     EXPECT_TRUE(history[end - 1].hits.any());
   }
+  EXPECT_GT(several, 20U);
+}
+
+TEST(Presence, OfWhatCameBackHasNoEnd) {
+  const ScanVotes there = votes(0, 50, 2), away = votes(0, 0, 40), few = votes(0, 12, 0);
+  const auto inTurn = [](std::vector<ScanVotes> history) {
+    for (std::size_t i = 0; i < history.size(); ++i) history[i].time_s = static_cast<double>(i);
+    return history;
+  };
+  const std::vector<ScanVotes> back = inTurn({there, there, there, away, away, few});
+  const auto presence = presenceOf(back, visibilityOf(back), {});
+  ASSERT_TRUE(presence.has_value());
+  EXPECT_EQ(presence->first_seen_s, 0);
+  EXPECT_EQ(presence->last_seen_s, 5);
+  EXPECT_FALSE(presence->seen_through_s.has_value());
+  EXPECT_EQ(stateOf(back), PresenceState::Present);
+  const std::vector<ScanVotes> came_twice = inTurn({away, few, away, there, there, there});
+  const auto twice = presenceOf(came_twice, visibilityOf(came_twice), {});
+  ASSERT_TRUE(twice.has_value());
+  EXPECT_EQ(twice->first_seen_s, 1);
+  EXPECT_EQ(twice->seen_empty_s, 0);
+}
+
+TEST(Presence, OneWeakHitDoesNotOutweighWhatIsSeenThrough) {
+  const std::vector<ScanVotes> before{votes(1, 50, 2)};
+  std::vector<ScanVotes> after{votes(2, 0, 40), votes(3, 0, 0)};
+  after[1].hits.set(60);
+  EXPECT_EQ(stateAfter(after, visibilityOf(before), {}), PresenceState::Absent);
 }
 
 TEST(Presence, SeesACarLeaveAndArrive) {

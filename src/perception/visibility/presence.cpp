@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The interval is the subarray of maximum sum (Kadane's method).
+// Intervals are subarrays of maximum sum (Kadane's method).
 #include "perception/visibility/presence.hpp"
 
 #include <algorithm>
@@ -12,6 +12,42 @@ namespace {
 
 double count(const PlaceSet& places) {
   return static_cast<double>(places.count());
+}
+
+/// Scans by number: from `begin` to before `end`.
+struct Interval {
+  std::size_t begin = 0, end = 0;
+  double log_odds = 0;  ///< of "there"
+};
+
+/// The scans with the largest sum of log-odds; none when no sum is positive. Its first and its last scan hit the thing.
+std::optional<Interval> likeliestOf(std::span<const ScanVotes> votes, const Visibility& thing,
+                                    const PresenceParams& params) {
+  Interval best, current;
+  for (std::size_t i = 0; i < votes.size(); ++i) {
+    if (current.log_odds <= 0) current = {i, i, 0};
+    current.log_odds += logOddsOfPresence(votes.subspan(i, 1), thing.share_of_hits, params);
+    current.end = i + 1;
+    if (current.log_odds > best.log_odds) best = current;
+  }
+  return best.end > best.begin ? std::optional(best) : std::nullopt;
+}
+
+/// From the first to the last time that the thing was there; `log_odds` of the likeliest of these times. It was there,
+/// too, before or after the likeliest one, where scans in a row say so with `decided` or more.
+std::optional<Interval> timesOf(std::span<const ScanVotes> votes, const Visibility& thing,
+                                const PresenceParams& params) {
+  std::optional<Interval> there = likeliestOf(votes, thing, params);
+  if (!there) return there;
+  while (const auto again = likeliestOf(votes.subspan(there->end), thing, params)) {
+    if (again->log_odds < params.decided) break;
+    there->end += again->end;
+  }
+  while (const auto earlier = likeliestOf(votes.first(there->begin), thing, params)) {
+    if (earlier->log_odds < params.decided) break;
+    there->begin = earlier->begin;
+  }
+  return there;
 }
 
 }  // namespace
@@ -56,18 +92,11 @@ bool showAbsence(std::span<const ScanVotes> votes, const Visibility& thing, cons
 
 std::optional<Presence> presenceOf(std::span<const ScanVotes> votes, const Visibility& thing,
                                    const PresenceParams& params) {
-  std::size_t best_begin = 0, best_end = 0, begin = 0;
-  double best = 0, sum = 0;
-  for (std::size_t i = 0; i < votes.size(); ++i) {
-    if (sum <= 0) sum = 0, begin = i;
-    sum += logOddsOfPresence(votes.subspan(i, 1), thing.share_of_hits, params);
-    if (sum > best) best = sum, best_begin = begin, best_end = i + 1;
-  }
-  if (best_begin == best_end) return std::nullopt;
-  // The sum is largest where the interval ends with scans that hit the thing.
-  Presence presence{votes[best_begin].time_s, votes[best_end - 1].time_s, std::nullopt, std::nullopt};
+  const std::optional<Interval> there = timesOf(votes, thing, params);
+  if (!there) return std::nullopt;
+  Presence presence{votes[there->begin].time_s, votes[there->end - 1].time_s, std::nullopt, std::nullopt};
   const auto sawThrough = [](const ScanVotes& vote) { return vote.seen_through.any(); };
-  const auto before = votes.first(best_begin), after = votes.subspan(best_end);
+  const auto before = votes.first(there->begin), after = votes.subspan(there->end);
   if (showAbsence(before, thing, params))
     presence.seen_empty_s = std::find_if(before.rbegin(), before.rend(), sawThrough)->time_s;
   if (showAbsence(after, thing, params))
@@ -81,8 +110,12 @@ std::string_view nameOf(PresenceState state) {
 }
 
 PresenceState stateAfter(std::span<const ScanVotes> votes, const Visibility& thing, const PresenceParams& params) {
-  if (const auto presence = presenceOf(votes, thing, params))
-    return presence->seen_through_s ? PresenceState::Absent : PresenceState::Present;
+  if (const auto there = timesOf(votes, thing, params)) {
+    if (showAbsence(votes.subspan(there->end), thing, params)) return PresenceState::Absent;
+    // Weak evidence for the thing does not outweigh what shows that it is gone.
+    if (there->log_odds >= params.decided) return PresenceState::Present;
+    return showAbsence(votes, thing, params) ? PresenceState::Absent : PresenceState::Present;
+  }
   return showAbsence(votes, thing, params) ? PresenceState::Absent : PresenceState::NotObserved;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// When a thing was there: the interval of scans that speaks for it, from votes of rays that hit it or saw through it.
+// When a thing was there: the intervals of scans that speak for it, from votes of rays that hit it or saw through it.
 #pragma once
 
 #include <bitset>
@@ -34,7 +34,7 @@ struct PresenceParams {
   double min_share = 0.2;
 };
 
-/// The interval of time in which a thing was there, as far as rays tell.
+/// From when to when a thing was there, as far as rays tell. It may have been away in between.
 struct Presence {
   double first_seen_s = 0, last_seen_s = 0;  ///< scans that hit it
   std::optional<double> seen_empty_s;        ///< the last scan before that saw through it, when it was not yet there
@@ -59,12 +59,15 @@ Visibility visibilityOf(std::span<const ScanVotes> votes);
 /// Whether some scans show that the thing was not there.
 bool showAbsence(std::span<const ScanVotes> votes, const Visibility& thing, const PresenceParams& params);
 
-/// The interval with the largest sum of log-odds; before or after it the thing was not there when showAbsence() holds
-/// of those scans. `votes` are sorted by time, one element a time. Absent when no scan speaks for it.
+/// The thing was there in the interval with the largest sum of log-odds, and in each earlier or later interval whose
+/// sum is `decided` or more: what drove off and came back is there. Before the first of them or after the last the
+/// thing was not there when showAbsence() holds of those scans. `votes` are sorted by time, one element a time. Absent
+/// when no scan speaks for it.
 std::optional<Presence> presenceOf(std::span<const ScanVotes> votes, const Visibility& thing,
                                    const PresenceParams& params);
 
-/// The state of a thing at the end of some scans.
+/// The state of a thing at the end of some scans: absent exactly when the place was seen through after the last
+/// interval in which it was there.
 enum class PresenceState : std::uint8_t { Present, Absent, NotObserved };
 std::string_view nameOf(PresenceState state);  ///< "not observed"
 
