@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Verdicts of rays about places, against all rays one by one.
-#include "perception/visibility/ray_bundle.hpp"
+#include "perception/visibility/scan_rays.hpp"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -11,6 +13,30 @@
 
 namespace cluxel::perception {
 namespace {
+
+struct Ray {
+  Eigen::Vector3d start, end;  ///< [m, map]
+};
+
+scan::Scan scanOf(const std::vector<Ray>& rays) {
+  scan::Scan scan;
+  for (const Ray& ray : rays) {
+    const Eigen::Vector3f end = ray.end.cast<float>();
+    scan.points.x.push_back(end.x()), scan.points.y.push_back(end.y()), scan.points.z.push_back(end.z());
+    scan.points.origin.push_back(ray.start.cast<float>());
+  }
+  return scan;
+}
+
+/// Rays that start at one place; `ends` are relative to it.
+ScanRays raysFrom(const Eigen::Vector3d& origin, const std::vector<Eigen::Vector3f>& ends) {
+  scan::Scan scan;
+  scan.has_pose = true;
+  scan.T_map_sensor = Eigen::Translation3d(origin) * Eigen::Isometry3d::Identity();
+  for (const Eigen::Vector3f& end : ends)
+    scan.points.x.push_back(end.x()), scan.points.y.push_back(end.y()), scan.points.z.push_back(end.z());
+  return ScanRays(scan);
+}
 
 /// The verdict from all rays, without an index.
 PlaceVerdict verdictOfAll(const std::vector<Eigen::Vector3f>& ends, const Eigen::Vector3d& origin,
@@ -37,7 +63,7 @@ Eigen::Vector3d randomDirection(std::mt19937& random) {
   return Eigen::Vector3d(normal(random), normal(random), normal(random)).normalized();
 }
 
-TEST(RayBundle, AgreesWithAllRaysOneByOne) {
+TEST(ScanRays, AgreesWithAllRaysOneByOne) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> range(1, 12), unit(-1, 1);
   const Eigen::Vector3d origin(100, -50, 3);
@@ -48,7 +74,7 @@ TEST(RayBundle, AgreesWithAllRaysOneByOne) {
        {Eigen::Vector3d(0, 0, 1), Eigen::Vector3d(0, 0, -1), Eigen::Vector3d(-1, 0, 0)})
     for (int i = 0; i < 2'000; ++i)
       ends.push_back((range(random) * (special + 0.05 * randomDirection(random)).normalized()).cast<float>());
-  const RayBundle bundle(origin, ends);
+  const ScanRays rays = raysFrom(origin, ends);
   std::array<int, 4> seen{};
   for (int i = 0; i < 3'000; ++i) {
     Eigen::Vector3d direction = randomDirection(random);
@@ -56,7 +82,7 @@ TEST(RayBundle, AgreesWithAllRaysOneByOne) {
       direction = Eigen::Vector3d(0.03 * unit(random), 0.03 * unit(random), i % 8 == 1 ? 1 : -1).normalized();
     if (i % 4 == 2) direction = Eigen::Vector3d(-1, 0.02 * unit(random), 0.02 * unit(random)).normalized();
     const Eigen::Vector3d place = origin + range(random) * direction;
-    const PlaceVerdict expected = verdictOfAll(ends, origin, place, {}), got = bundle.verdictAt(place, {});
+    const PlaceVerdict expected = verdictOfAll(ends, origin, place, {}), got = rays.verdictAt(place, {});
     ASSERT_EQ(got.verdict, expected.verdict) << i;
     ASSERT_EQ(got.is_sparse, expected.is_sparse) << i;
     ++seen[static_cast<std::size_t>(got.verdict)];
@@ -81,7 +107,7 @@ TEST(DirectionIndex, FindsEachRayInItsOwnDirection) {
   const DirectionIndex index(ends);
   for (const Eigen::Vector3f& end : ends) {
     int near = 0;
-    index.forEachNear(end.cast<double>(), 1e-6, [&](double, double) { ++near; });
+    index.forEachNear(end.cast<double>(), 1e-6, [&](const auto&...) { ++near; });
     ASSERT_GT(near, 0) << end.transpose();
   }
 }
@@ -94,23 +120,23 @@ std::vector<Eigen::Vector3f> wallAhead(double step_m) {
   return ends;
 }
 
-TEST(RayBundle, TellsWhatIsHitHiddenAndSeenThrough) {
-  const RayBundle bundle(Eigen::Vector3d::Zero(), wallAhead(0.05));
-  EXPECT_EQ(bundle.verdictAt({10, 0, 0}, {}).verdict, RayVerdict::Hit);
-  EXPECT_EQ(bundle.verdictAt({5, 0, 0}, {}).verdict, RayVerdict::SeenThrough);
-  EXPECT_EQ(bundle.verdictAt({15, 0, 0}, {}).verdict, RayVerdict::NotCovered) << "hidden by the wall";
-  EXPECT_EQ(bundle.verdictAt({5, 4, 0}, {}).verdict, RayVerdict::NotCovered) << "no ray goes there";
-  EXPECT_EQ(bundle.verdictAt({-5, 0, 0}, {}).verdict, RayVerdict::NotCovered) << "behind the sensor";
-  EXPECT_EQ(bundle.verdictAt({9.7, 0, 0}, {}).verdict, RayVerdict::NotCovered) << "too near the wall to tell";
+TEST(ScanRays, TellsWhatIsHitHiddenAndSeenThrough) {
+  const ScanRays rays = raysFrom(Eigen::Vector3d::Zero(), wallAhead(0.05));
+  EXPECT_EQ(rays.verdictAt({10, 0, 0}, {}).verdict, RayVerdict::Hit);
+  EXPECT_EQ(rays.verdictAt({5, 0, 0}, {}).verdict, RayVerdict::SeenThrough);
+  EXPECT_EQ(rays.verdictAt({15, 0, 0}, {}).verdict, RayVerdict::NotCovered) << "hidden by the wall";
+  EXPECT_EQ(rays.verdictAt({5, 4, 0}, {}).verdict, RayVerdict::NotCovered) << "no ray goes there";
+  EXPECT_EQ(rays.verdictAt({-5, 0, 0}, {}).verdict, RayVerdict::NotCovered) << "behind the sensor";
+  EXPECT_EQ(rays.verdictAt({9.7, 0, 0}, {}).verdict, RayVerdict::NotCovered) << "too near the wall to tell";
 }
 
-TEST(RayBundle, ConcludesNothingAtTheEdgeOfWhatHidesAPlace) {
+TEST(ScanRays, ConcludesNothingAtTheEdgeOfWhatHidesAPlace) {
   std::vector<Eigen::Vector3f> ends = wallAhead(0.05);
   const auto endAtBoard = [&](double edge_y) {  // a board 2 m ahead: rays to the left of an edge on the wall
     std::vector<Eigen::Vector3f> shortened = ends;
     for (Eigen::Vector3f& end : shortened)
       if (end.y() > edge_y) end *= 0.2F;
-    return RayBundle(Eigen::Vector3d::Zero(), shortened);
+    return raysFrom(Eigen::Vector3d::Zero(), shortened);
   };
   const Eigen::Vector3d place(5, 0, 0);
   EXPECT_EQ(endAtBoard(0.12).verdictAt(place, {}).verdict, RayVerdict::SeenThrough);
@@ -118,9 +144,9 @@ TEST(RayBundle, ConcludesNothingAtTheEdgeOfWhatHidesAPlace) {
   EXPECT_EQ(endAtBoard(-0.4).verdictAt(place, {}).verdict, RayVerdict::NotCovered);
 }
 
-TEST(RayBundle, DoesNotConcludeFromFewRays) {
-  const RayBundle bundle(Eigen::Vector3d::Zero(), wallAhead(0.5));
-  const PlaceVerdict place = bundle.verdictAt({5, 0, 0}, {});
+TEST(ScanRays, DoesNotConcludeFromFewRays) {
+  const ScanRays rays = raysFrom(Eigen::Vector3d::Zero(), wallAhead(0.5));
+  const PlaceVerdict place = rays.verdictAt({5, 0, 0}, {});
   EXPECT_EQ(place.verdict, RayVerdict::FewPassed);
   EXPECT_TRUE(place.is_sparse);
 }
@@ -133,7 +159,7 @@ struct OpenPlace {
   std::function<bool(const Eigen::Vector3d&)> isKept = [](const Eigen::Vector3d&) { return true; };
   std::function<bool(const Eigen::Vector3d&)> isLost = [](const Eigen::Vector3d&) { return false; };
 
-  RayBundle seen() const {
+  ScanRays seen() const {
     std::vector<Eigen::Vector3f> ends;
     for (double tilt = -0.8; tilt < 0.9; tilt += tilt_step)
       for (double pan = -std::numbers::pi; pan < std::numbers::pi; pan += pan_step) {
@@ -143,21 +169,21 @@ struct OpenPlace {
         if (range_m > 60 || isLost(way) || !isKept(range_m * way)) continue;
         ends.push_back((range_m * way).cast<float>());
       }
-    return RayBundle(Eigen::Vector3d::Zero(), ends);
+    return raysFrom(Eigen::Vector3d::Zero(), ends);
   }
 };
 
 /// Where the head of a lamp stood.
 const Eigen::Vector3d kHead(10, 0.3, 3);
 
-TEST(RayBundle, SeesThroughPlacesBeforeTheSky) {
-  const RayBundle bundle = OpenPlace().seen();
-  EXPECT_EQ(bundle.verdictAt(kHead, {}).verdict, RayVerdict::SeenThrough);
-  EXPECT_EQ(bundle.verdictAt({10, 0.3, 7}, {}).verdict, RayVerdict::SeenThrough);
-  EXPECT_EQ(bundle.verdictAt({10, 0.3, 9.5}, {}).verdict, RayVerdict::NotCovered) << "higher than all returns";
+TEST(ScanRays, SeesThroughPlacesBeforeTheSky) {
+  const ScanRays rays = OpenPlace().seen();
+  EXPECT_EQ(rays.verdictAt(kHead, {}).verdict, RayVerdict::SeenThrough);
+  EXPECT_EQ(rays.verdictAt({10, 0.3, 7}, {}).verdict, RayVerdict::SeenThrough);
+  EXPECT_EQ(rays.verdictAt({10, 0.3, 9.5}, {}).verdict, RayVerdict::NotCovered) << "higher than all returns";
 }
 
-TEST(RayBundle, ConcludesNothingFromMissingReturnsOfScansThatWereThinnedOrCut) {
+TEST(ScanRays, ConcludesNothingFromMissingReturnsOfScansThatWereThinnedOrCut) {
   const auto verdictOf = [](const OpenPlace& place) { return place.seen().verdictAt(kHead, {}).verdict; };
   std::mt19937 random(5);
   EXPECT_EQ(verdictOf({.isKept = [&](const auto&) { return random() % 8 == 0; }}), RayVerdict::NotCovered);
@@ -169,7 +195,7 @@ TEST(RayBundle, ConcludesNothingFromMissingReturnsOfScansThatWereThinnedOrCut) {
   EXPECT_EQ(verdictOf({.pan_step = 0.04}), RayVerdict::NotCovered) << "columns far apart";
 }
 
-TEST(RayBundle, ConcludesNothingBehindWhatSwallowsRays) {
+TEST(ScanRays, ConcludesNothingBehindWhatSwallowsRays) {
   // A black van 5 m ahead, 4 m wide and up to 2.2 m above the sensor.
   const auto meetsVan = [](const Eigen::Vector3d& way) {
     return way.x() > 0 && std::abs(5 * way.y() / way.x()) < 2 && 5 * way.z() / way.x() < 2.2;
@@ -185,7 +211,7 @@ TEST(RayBundle, ConcludesNothingBehindWhatSwallowsRays) {
   EXPECT_EQ(OpenPlace{.isLost = puddle}.seen().verdictAt({10, 0, -1}, {}).verdict, RayVerdict::NotCovered);
 }
 
-TEST(RayBundle, TakesRaysWithOwnOriginsTogetherWhereTheyStartTogether) {
+TEST(ScanRays, TakesRaysWithOwnOriginsTogetherWhereTheyStartTogether) {
   scan::Scan scan;
   scan.T_map_sensor = Eigen::Translation3d(7, 0, 0) * Eigen::Isometry3d::Identity();
   for (int i = 0; i < 40; ++i) {
@@ -193,18 +219,60 @@ TEST(RayBundle, TakesRaysWithOwnOriginsTogetherWhereTheyStartTogether) {
     scan.points.x.push_back(at), scan.points.y.push_back(5), scan.points.z.push_back(0);
     scan.points.origin.emplace_back(i < 20 ? 0.001F * at : 3, 0, 0);
   }
-  std::vector<Eigen::Vector3d> origins;
-  forEachRayBundle(scan, [&](const RayBundle& bundle) { origins.push_back(bundle.origin()); });
-  ASSERT_EQ(origins.size(), 2);
-  EXPECT_TRUE(origins[0].isApprox(Eigen::Vector3d(7, 0, 0)));
-  EXPECT_TRUE(origins[1].isApprox(Eigen::Vector3d(10, 0, 0)));
+  const ScanRays rays(scan);
+  ASSERT_EQ(rays.bundles().size(), 2U);
+  EXPECT_TRUE(rays.bundles()[0].origin().isApprox(Eigen::Vector3d(7, 0, 0)));
+  EXPECT_TRUE(rays.bundles()[1].origin().isApprox(Eigen::Vector3d(10, 0, 0)));
   scan.points.origin.clear();
-  forEachRayBundle(scan, [](const RayBundle&) { FAIL() << "a scan without pose has no origin"; });
+  EXPECT_TRUE(ScanRays(scan).empty()) << "a scan without pose has no origin";
+}
+
+TEST(ScanRays, OfALaserThatMovesTellTheSameInAnyOrder) {
+  std::mt19937 random(6);
+  std::uniform_real_distribution<double> unit(0, 1);
+  std::vector<Ray> rays;
+  for (int i = 0; i < 24'000; ++i) {
+    const Eigen::Vector3d start(0.2 * (i % 12), 0, 0);  // two lasers or more take turns
+    rays.push_back({start, start + (2 + 8 * unit(random)) * randomDirection(random)});
+  }
+  const ScanRays taking_turns(scanOf(rays));
+  std::vector<Ray> in_turn = rays;
+  std::stable_sort(in_turn.begin(), in_turn.end(),
+                   [](const Ray& a, const Ray& b) { return a.start.x() < b.start.x(); });
+  const ScanRays one_after_the_other(scanOf(in_turn));
+  ASSERT_EQ(taking_turns.bundles().size(), 12U);
+  std::array<int, 4> seen{};
+  for (int i = 0; i < 2'000; ++i) {
+    const Eigen::Vector3d place = (0.5 + 8 * unit(random)) * randomDirection(random);
+    RayCounts expected;  // of all rays one by one
+    for (const Ray& ray : rays) {
+      const Eigen::Vector3d way = ray.end - ray.start, to_place = place - ray.start;
+      const double range = way.norm(), along = to_place.dot(way) / range;
+      if (to_place.norm() < 0.3 || along <= 0 || to_place.squaredNorm() - along * along > 0.15 * 0.15) continue;
+      expected.ended += std::abs(range - along) <= 0.25 ? 1 : 0;
+      expected.passed += range >= along + 0.4 ? 1 : 0;
+    }
+    const RayCounts counts = taking_turns.countsAt(place, {});
+    ASSERT_NEAR(static_cast<double>(counts.ended), static_cast<double>(expected.ended), 1) << "rounding at the limits";
+    ASSERT_NEAR(static_cast<double>(counts.passed), static_cast<double>(expected.passed), 1);
+    const PlaceVerdict verdict = taking_turns.verdictAt(place, {});
+    ASSERT_EQ(verdict.verdict, one_after_the_other.verdictAt(place, {}).verdict);
+    ++seen[static_cast<std::size_t>(verdict.verdict)];
+  }
+  for (const int count : seen) EXPECT_GT(count, 20);
+}
+
+TEST(ScanRays, OfOneScanTellTogetherWhereverTheyStart) {
+  std::vector<Ray> rays;
+  for (int i = 0; i < 3; ++i) rays.push_back({{0.2 * i, 0, 0}, {10, 0, 0}});
+  EXPECT_EQ(ScanRays(scanOf(rays)).verdictAt({5, 0, 0}, {}).verdict, RayVerdict::SeenThrough);
+  rays.pop_back();
+  EXPECT_EQ(ScanRays(scanOf(rays)).verdictAt({5, 0, 0}, {}).verdict, RayVerdict::FewPassed);
 }
 
 /// Rays from the origin to a plane x = 5 m with bars 4 cm wide every 16 cm, and to a wall at x = 9 m where there is
 /// none.
-RayBundle raysAtBars(bool is_solid) {
+ScanRays raysAtBars(bool is_solid) {
   std::vector<Eigen::Vector3f> ends;
   for (int row = -20; row <= 20; ++row)
     for (int column = -200; column <= 200; ++column) {
@@ -213,10 +281,10 @@ RayBundle raysAtBars(bool is_solid) {
       const double x = is_bar ? 5 : 9;
       ends.emplace_back(static_cast<float>(x), static_cast<float>(y * x / 5), static_cast<float>(z * x / 5));
     }
-  return {Eigen::Vector3d(0, 0, 0), ends};
+  return raysFrom(Eigen::Vector3d::Zero(), ends);
 }
 
-RayCounts countsOn(const RayBundle& rays) {
+RayCounts countsOn(const ScanRays& rays) {
   RayCounts sum;
   for (int i = -15; i <= 15; ++i) {
     const RayCounts counts = rays.countsAt({5, i * 0.2, 0.3}, {.near_m = 0.10, .behind_m = 0.50});
@@ -225,12 +293,12 @@ RayCounts countsOn(const RayBundle& rays) {
   return sum;
 }
 
-TEST(RayBundle, CountsRaysThatGoThroughAFence) {
+TEST(ScanRays, CountsRaysThatGoThroughAFence) {
   const RayCounts counts = countsOn(raysAtBars(false));
   EXPECT_NEAR(static_cast<double>(counts.passed) / static_cast<double>(counts.passed + counts.ended), 0.75, 0.05);
 }
 
-TEST(RayBundle, CountsNoneThroughAWall) {
+TEST(ScanRays, CountsNoneThroughAWall) {
   const RayCounts counts = countsOn(raysAtBars(true));
   EXPECT_GT(counts.ended, 500U);
   EXPECT_EQ(counts.passed, 0U);

@@ -7,6 +7,10 @@
 namespace cluxel::tasks {
 namespace {
 
+std::uint64_t bits(std::size_t scans) {
+  return (std::uint64_t{1} << scans) - 1;
+}
+
 /// A board of 6 by 5 cluxels that lies flat, 0.3 m apart; neighbours intersect.
 perception::SceneCluxels board() {
   constexpr std::uint32_t kColumns = 6, kRows = 5;
@@ -33,7 +37,7 @@ ChangedCluxels thereBefore() {
   ChangedCluxels all;
   all.cluxels = board();
   all.is_told.assign(all.cluxels.size(), true);
-  all.before.assign(all.cluxels.size(), {.is_hit = true, .hits = 9, .sparse_hits = 9});
+  all.before.assign(all.cluxels.size(), {.hits = bits(9), .sparse_hits = bits(9)});
   all.after.resize(all.cluxels.size());
   return all;
 }
@@ -53,12 +57,12 @@ std::size_t vanishedIn(ChangedCluxels all) {
 std::size_t vanishedAfter(std::uint8_t scans, const RayFindings& before) {
   ChangedCluxels all = thereBefore();
   all.before.assign(all.cluxels.size(), before);
-  for (RayFindings& after : all.after) after = {.passed = scans, .passed_scans = (std::uint64_t{1} << scans) - 1};
+  for (RayFindings& after : all.after) after = {.passed = bits(scans)};
   return vanishedIn(all);
 }
 
-constexpr RayFindings kDense{.is_hit = true, .hits = 9, .sparse_hits = 9};
-constexpr RayFindings kHalfDense{.is_hit = true, .hits = 9, .sparse_hits = 5, .passed = 5};
+const RayFindings kDense{.hits = bits(9), .sparse_hits = bits(9)};
+const RayFindings kHalfDense{.hits = bits(9), .sparse_hits = bits(5), .passed = bits(5)};
 
 /// Several rays of later scans saw through the upper `rows` rows; the others are still hit.
 std::size_t vanishedAbove(std::size_t rows, std::uint8_t scans) {
@@ -66,9 +70,9 @@ std::size_t vanishedAbove(std::size_t rows, std::uint8_t scans) {
   ChangedCluxels all = thereBefore();
   for (std::size_t i = 0; i < all.after.size(); ++i) {
     if (i < all.after.size() - rows * kColumns)
-      all.after[i] = {.is_hit = true, .hits = 9};
+      all.after[i] = {.hits = bits(9)};
     else
-      all.after[i] = {.is_seen_through = true, .seen_through = scans, .through_scans = (std::uint64_t{1} << scans) - 1};
+      all.after[i] = {.seen_through = bits(scans)};
   }
   return vanishedIn(all);
 }
@@ -85,7 +89,7 @@ TEST(ChangedCluxels, WhatNoLaterRaySawThroughIsNoPossibleCluster) {
   ChangedCluxels all = thereBefore();
   all.changes.assign(all.cluxels.size(), CluxelChange::Vanished);
   EXPECT_TRUE(possibleClusters(CluxelChange::Vanished, all).empty());
-  for (RayFindings& after : all.after) after = {.passed = 3, .passed_scans = 7};
+  for (RayFindings& after : all.after) after = {.passed = bits(3)};
   EXPECT_EQ(possibleClusters(CluxelChange::Vanished, all).size(), 1U);
 }
 
@@ -94,11 +98,31 @@ TEST(ChangedCluxels, FewRaysOfTwoScansShowThatALargeDenseThingIsGone) {
   EXPECT_EQ(vanishedAfter(2, kHalfDense), 0);
 }
 
+TEST(ChangedCluxels, EachScanCountsHoweverManyThereAre) {
+  ChangedCluxels all = thereBefore();
+  all.before.assign(all.cluxels.size(), kHalfDense);
+  for (RayFindings& after : all.after)
+    for (const std::uint32_t scan : {20U, 84U, 148U}) after.passed.insert(scan);
+  EXPECT_EQ(vanishedIn(all), 1);
+}
+
+TEST(ChangedCluxels, AThingThatWasAwayForAWhileIsNoCrown) {
+  ChangedCluxels all = thereBefore();
+  for (std::size_t i = 0; i < all.cluxels.size(); ++i) {
+    all.before[i].seen_through = bits(12) & ~bits(9);
+    all.after[i] = {.seen_through = 1U << 12U};
+  }
+  EXPECT_EQ(vanishedIn(all), 1);
+  for (std::size_t i = 0; i < all.cluxels.size(); ++i)  // each of these scans hits some of it
+    all.before[i] = {.hits = i % 2 == 0 ? bits(12) : bits(9), .seen_through = i % 2 == 0 ? 0 : bits(12) & ~bits(9)};
+  EXPECT_EQ(vanishedIn(all), 0);
+}
+
 TEST(ChangedCluxels, FewRaysOfTwoScansDoNotShowThatASmallThingIsGone) {
   ChangedCluxels all = thereBefore();
   for (std::size_t i = 0; i < all.after.size(); ++i) {
     if (i < 18) all.before[i] = {};
-    all.after[i] = {.passed = 2, .passed_scans = 3};
+    all.after[i] = {.passed = bits(2)};
   }
   EXPECT_EQ(vanishedIn(all), 1) << "12 cluxels";
   all.before[18] = {};
@@ -124,7 +148,7 @@ TEST(ChangedCluxels, ThreeScansMustAgreeThatAPartOfWhatStaysIsGone) {
 ChangedCluxels partlyPassed() {
   ChangedCluxels all = thereBefore();
   for (std::size_t i = 0; i < all.after.size(); ++i)
-    all.after[i] = i < 12 ? RayFindings{.is_hit = true, .hits = 9} : RayFindings{.passed = 5, .passed_scans = 31};
+    all.after[i] = i < 12 ? RayFindings{.hits = bits(9)} : RayFindings{.passed = bits(5)};
   return all;
 }
 

@@ -162,7 +162,7 @@ TEST(ChangedParts, MuchOfAThingThatRaysPartlyPassIsGoneWhenManyLooksMissIt) {
     if (i % 3 == 0) cells[i].other.hit_scans = bits(1);
   }
   EXPECT_EQ(partsIn(wider(cells, 3)), 1U);
-  for (PointCell& cell : cells) cell.other.through_scans &= bits(2);
+  for (PointCell& cell : cells) cell.other.through_scans = bits(2);
   EXPECT_EQ(partsIn(wider(cells, 3)), 0U) << "two scans are too few";
 }
 

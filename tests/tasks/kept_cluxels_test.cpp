@@ -55,8 +55,8 @@ Field fieldOf(const Change& change) {
     field.all.number.push_back(i), field.all.object.push_back(0), field.all.is_told.push_back(true);
     const CluxelChange changed = change(places[i]);
     field.all.changes.push_back(changed);
-    const RayFindings hit{.is_hit = true, .hits = 9, .sparse_hits = 9};
-    const RayFindings through{.is_seen_through = true, .seen_through = 5, .through_scans = 31};
+    const RayFindings hit{.hits = 511, .sparse_hits = 511};
+    const RayFindings through{.seen_through = 31};
     const bool has_left = changed == CluxelChange::Vanished, has_come = changed == CluxelChange::Appeared;
     field.all.before.push_back(has_come ? through : hit);
     field.all.after.push_back(has_left ? through : hit);

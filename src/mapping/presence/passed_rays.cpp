@@ -82,10 +82,10 @@ class PassedRaysUpdate::View : public ScanView {
   View(const std::vector<Barrier>& barriers, std::vector<Counted> passed)
       : barriers_(barriers), passed_(std::move(passed)) {}
 
-  void look(const perception::RayBundle& bundle, unsigned threads) override {
+  void look(const perception::ScanRays& rays, unsigned threads) override {
     parallelFor(passed_.size(), threads, [&](std::size_t i) {
       for (const Eigen::Vector3d& place : barriers_[passed_[i].barrier].places)
-        passed_[i].counts += bundle.countsAt(place, kThroughParams);
+        passed_[i].counts += rays.countsAt(place, kThroughParams);
     });
   }
 

@@ -69,15 +69,14 @@ class PresenceVoting::View : public ScanView {
   View(const PresenceVoting& voting, double time_s, std::vector<std::size_t> passed)
       : voting_(voting), passed_(std::move(passed)), votes_(passed_.size(), {time_s, {}, {}}) {}
 
-  void look(const perception::RayBundle& bundle, unsigned threads) override {
+  void look(const perception::ScanRays& rays, unsigned threads) override {
     constexpr perception::RayParams kParams;
     parallelFor(passed_.size(), threads, [&](std::size_t i) {
       const std::span<const Eigen::Vector3d> places = voting_.places_[passed_[i]];
       const Sphere& sphere = voting_.spheres_[passed_[i]];
-      const double range_m = bundle.maxRange_m() + sphere.radius_m + kParams.hit_m;
-      if ((sphere.centre - bundle.origin()).norm() > range_m) return;
+      if (!rays.mayConcern(sphere.centre, sphere.radius_m, kParams)) return;
       for (std::size_t place = 0; place < places.size(); ++place) {
-        const RayVerdict verdict = bundle.verdictAt(places[place], kParams).verdict;
+        const RayVerdict verdict = rays.verdictAt(places[place], kParams).verdict;
         if (verdict == RayVerdict::Hit) votes_[i].hits.set(place);
         if (verdict == RayVerdict::SeenThrough) votes_[i].seen_through.set(place);
       }

@@ -11,7 +11,7 @@
 #include "mapping/clouds/cloud.hpp"
 #include "mapping/presence/ray_pass.hpp"
 #include "perception/visibility/presence.hpp"
-#include "perception/visibility/ray_bundle.hpp"
+#include "perception/visibility/scan_rays.hpp"
 
 namespace cluxel::mapping {
 

@@ -40,10 +40,9 @@ class RayPass {
     ScanViews views;
     for (const RayObserver* observer : observers_)
       views.push_back(observer->wants(cloud) ? observer->view(cloud) : nullptr);
-    perception::forEachRayBundle(loaded(cloud), [&](const perception::RayBundle& bundle) {
-      for (const auto& view : views)
-        if (view) view->look(bundle, threads_of_scan_);
-    });
+    const perception::ScanRays rays(loaded(cloud));
+    for (const auto& view : views)
+      if (view) view->look(rays, threads_of_scan_);
     return views;
   }
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "mapping/clouds/cloud.hpp"
-#include "perception/visibility/ray_bundle.hpp"
+#include "perception/visibility/scan_rays.hpp"
 
 namespace cluxel::mapping {
 
@@ -16,8 +16,8 @@ namespace cluxel::mapping {
 class ScanView {
  public:
   virtual ~ScanView() = default;
-  /// The next bundle of the scan's rays. May use `threads` threads.
-  virtual void look(const perception::RayBundle& bundle, unsigned threads) = 0;
+  /// Called once. May use `threads` threads.
+  virtual void look(const perception::ScanRays& rays, unsigned threads) = 0;
 };
 
 /// Looks at the rays of scans. Several scans are looked at at once, each with a view of its own; the views are taken

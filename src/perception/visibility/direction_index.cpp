@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Directions are sorted into cells of half a degree of azimuth and elevation by counting.
+// Directions are sorted into cells of azimuth and elevation by counting.
 #include "perception/visibility/direction_index.hpp"
 
 #include <algorithm>
@@ -9,9 +9,6 @@
 namespace cluxel::perception {
 
 namespace {
-
-constexpr int kRows = 360, kColumns = 720;
-constexpr double kCell_rad = std::numbers::pi / kRows;
 
 struct Direction {
   double azimuth = 0, elevation = 0;  ///< [rad]
@@ -42,24 +39,25 @@ Direction directionOfRay(const Eigen::Vector3f& v) {
   return {nearlyAtan2(v.y(), v.x()), nearlyAtan2(v.z(), v.head<2>().norm())};
 }
 
-int rowOf(double elevation) {
-  return std::clamp(static_cast<int>((elevation + std::numbers::pi / 2) / kCell_rad), 0, kRows - 1);
-}
-
-int columnOf(double azimuth) {
-  return static_cast<int>(std::floor((azimuth + std::numbers::pi) / kCell_rad));
-}
-
-/// Columns wrap around.
-std::size_t cellOf(int row, int column) {
-  const int wrapped = ((column % kColumns) + kColumns) % kColumns;
-  return static_cast<std::size_t>(row) * kColumns + static_cast<std::size_t>(wrapped);
-}
-
 }  // namespace
 
-DirectionIndex::DirectionIndex(std::vector<Eigen::Vector3f> ends)
-    : first_(static_cast<std::size_t>(kRows) * kColumns + 1, 0), rays_(ends.size()) {
+int DirectionIndex::rowOf(double elevation) const {
+  return std::clamp(static_cast<int>((elevation + std::numbers::pi / 2) / (std::numbers::pi / rows_)), 0, rows_ - 1);
+}
+
+int DirectionIndex::columnOf(double azimuth) const {
+  return static_cast<int>(std::floor((azimuth + std::numbers::pi) / (std::numbers::pi / rows_)));
+}
+
+std::size_t DirectionIndex::cellOf(int row, int column) const {
+  const int columns = 2 * rows_, wrapped = ((column % columns) + columns) % columns;
+  return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(wrapped);
+}
+
+DirectionIndex::DirectionIndex(std::vector<Eigen::Vector3f> ends, int rows)
+    : rows_(rows),
+      first_(2 * static_cast<std::size_t>(rows) * static_cast<std::size_t>(rows) + 1, 0),
+      rays_(ends.size()) {
   std::vector<std::uint32_t> cell(ends.size());
   for (std::size_t i = 0; i < ends.size(); ++i) {
     const Direction direction = directionOfRay(ends[i]);
@@ -71,7 +69,7 @@ DirectionIndex::DirectionIndex(std::vector<Eigen::Vector3f> ends)
   for (std::size_t i = 0; i < ends.size(); ++i) rays_[next[cell[i]]++] = ends[i];
 }
 
-DirectionIndex::Window DirectionIndex::windowAround(const Eigen::Vector3d& place, double near_m) {
+DirectionIndex::Window DirectionIndex::windowAround(const Eigen::Vector3d& place, double near_m) const {
   const Direction direction = directionOf(place);
   const double half_angle = std::asin(std::min(1.0, near_m / place.norm())) + kDirectionError_rad;
   // A circle around the direction is wider in azimuth the nearer it is to the zenith.
@@ -79,7 +77,7 @@ DirectionIndex::Window DirectionIndex::windowAround(const Eigen::Vector3d& place
   const double half_width = narrowest * std::numbers::pi > half_angle ? half_angle / narrowest : std::numbers::pi;
   const int low_column = columnOf(direction.azimuth - half_width);
   return {rowOf(direction.elevation - half_angle), rowOf(direction.elevation + half_angle), low_column,
-          std::min(columnOf(direction.azimuth + half_width) - low_column + 1, kColumns)};
+          std::min(columnOf(direction.azimuth + half_width) - low_column + 1, 2 * rows_)};
 }
 
 std::span<const Eigen::Vector3f> DirectionIndex::raysIn(int row, int column) const {

@@ -14,14 +14,18 @@ namespace cluxel::perception {
 
 class DirectionIndex {
  public:
-  /// `ends` are the ends of the rays relative to the place where they start [m]. Cost: linear in the rays.
-  explicit DirectionIndex(std::vector<Eigen::Vector3f> ends);
+  /// Cells of half a degree.
+  static constexpr int kFineRows = 360;
+
+  /// `ends` are the ends of the rays relative to the place where they start [m]. `rows`: cells of direction from the
+  /// nadir to the zenith, and half of those around. Cost: linear in the rays and cells.
+  explicit DirectionIndex(std::vector<Eigen::Vector3f> ends, int rows = kFineRows);
 
   /// Sorted by direction.
   std::span<const Eigen::Vector3f> rays() const { return rays_; }
 
-  /// Calls `visit(range_m, along_m)` for each ray that passes within `near_m` of a place, or would if it were longer:
-  /// its range, and where on it the place is nearest. `place` is relative to the start of the rays.
+  /// Calls `visit(end, range_m, along_m)` for each ray that passes within `near_m` of a place, or would if it were
+  /// longer: its range, and where on it the place is nearest. `place` is relative to the start of the rays.
   template <typename Visit>
   void forEachNear(const Eigen::Vector3d& place, double near_m, Visit&& visit) const {
     const Window window = windowAround(place, near_m);
@@ -33,7 +37,7 @@ class DirectionIndex {
           const double range_squared = end.squaredNorm(), product = place.dot(end);
           if (product <= 0 || product * product < aside_limit * range_squared) continue;
           const double range_m = std::sqrt(range_squared);
-          visit(range_m, product / range_m);
+          visit(end, range_m, product / range_m);
         }
   }
 
@@ -46,9 +50,13 @@ class DirectionIndex {
   struct Window {
     int low_row = 0, high_row = 0, low_column = 0, columns = 0;
   };
-  static Window windowAround(const Eigen::Vector3d& place, double near_m);
+  Window windowAround(const Eigen::Vector3d& place, double near_m) const;
+  int rowOf(double elevation) const;
+  int columnOf(double azimuth) const;
+  std::size_t cellOf(int row, int column) const;  ///< columns wrap around
   std::span<const Eigen::Vector3f> raysIn(int row, int column) const;
 
+  int rows_;
   std::vector<std::uint32_t> first_;   ///< of each cell of direction in rays_; cells row by row in elevation
   std::vector<Eigen::Vector3f> rays_;  ///< sorted by cell
 };

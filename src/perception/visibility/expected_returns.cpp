@@ -35,7 +35,7 @@ std::size_t elevationClassOf(double elevation_rad) {
 
 int countNear(const DirectionIndex& index, const Eigen::Vector3d& place, double near_m) {
   int count = 0;
-  index.forEachNear(place, near_m, [&](double, double) { ++count; });
+  index.forEachNear(place, near_m, [&](const auto&...) { ++count; });
   return count;
 }
 

@@ -25,8 +25,8 @@ constexpr perception::RayParams kCluxelRays;
 
 struct TimedScan {
   const mapping::Cloud& cloud;
-  std::size_t time;   ///< kBefore or kAfter
-  std::uint64_t bit;  ///< of RayLooks and RayFindings
+  std::size_t time;      ///< kBefore or kAfter
+  std::uint32_t number;  ///< by time
 };
 
 /// Calls `work(begin, end)` for pieces of [0, count).
@@ -47,11 +47,11 @@ class FirstFindings {
   }
 
   /// A cluxel that was hit at a time needs no more rays of that time.
-  void look(const perception::RayBundle& bundle, const TimedScan& scan, unsigned threads) {
+  void look(const perception::ScanRays& rays, const TimedScan& scan, unsigned threads) {
     std::vector<RayFindings>& found = found_[scan.time];
     inPieces(numbers_.size(), threads, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i)
-        if (!found[i].is_hit) found[i].add(bundle.verdictAt(cluxels_.center[numbers_[i]], kCluxelRays), scan.bit);
+        if (!found[i].isHit()) found[i].add(rays.verdictAt(cluxels_.center[numbers_[i]], kCluxelRays), scan.number);
     });
   }
 
@@ -84,13 +84,16 @@ class Survey {
         unread_(regions_.tiles()) {
     for (const mapping::Cloud* cloud : mapping::timedClouds(clouds_))
       scans_.push_back(
-          {*cloud, *cloud->time_s < since_s ? kBefore : kAfter, std::uint64_t{1} << (scans_.size() % kScanBits)});
+          {*cloud, *cloud->time_s < since_s ? kBefore : kAfter, static_cast<std::uint32_t>(scans_.size())});
   }
 
   ChangeSurvey run() {
     for (std::size_t i = 0; i < regions_.size(); ++i) surveyRegion(regions_.read(i));
     std::sort(survey_.states.begin(), survey_.states.end(),
               [](const ObjectStates& a, const ObjectStates& b) { return a.object < b.object; });
+    for (std::vector<ObjectBack>& of_time : survey_.back)
+      std::sort(of_time.begin(), of_time.end(),
+                [](const ObjectBack& a, const ObjectBack& b) { return a.object < b.object; });
     KeptCluxels::Clusters clusters = kept_cluxels_.take();
     survey_.cluxels = std::move(clusters.cluxels), survey_.clusters = std::move(clusters.groups);
     for (const std::size_t time : {kBefore, kAfter}) {
@@ -127,7 +130,7 @@ class Survey {
     CellSums sums;
     for (const TimedScan& scan : scans_)
       regions_.forEachPoint(region, scan.cloud, [&](const Eigen::Vector3d& p_map, std::uint32_t cluxel, std::size_t) {
-        if (may_change[cluxel]) sums.add(scan.time, scan.bit, p_map, cluxel);
+        if (may_change[cluxel]) sums.add(scan.time, scan.number, p_map, cluxel);
       });
     return sums.take(region);
   }
@@ -138,14 +141,14 @@ class Survey {
     if (!votes && !mayPass(scan.cloud, region.scene.cluxels.center)) return;
     const auto view = votes ? voting.view(scan.cloud) : nullptr;
     std::vector<PointCell>& of_other_time = cells[1 - scan.time];
-    perception::forEachRayBundle(map_.scanOf(scan.cloud.id), [&](const perception::RayBundle& bundle) {
-      findings.look(bundle, scan, threads_);
-      inPieces(of_other_time.size(), threads_, [&](std::size_t begin, std::size_t end) {
-        lookAtCells(bundle, scan.bit, &PointCell::other, std::span(of_other_time).subspan(begin, end - begin));
-      });
-      if (view) view->look(bundle, threads_);
+    const perception::ScanRays rays(map_.scanOf(scan.cloud.id));
+    findings.look(rays, scan, threads_);
+    inPieces(of_other_time.size(), threads_, [&](std::size_t begin, std::size_t end) {
+      lookAtCells(rays, scan.number, &PointCell::other, std::span(of_other_time).subspan(begin, end - begin));
     });
-    if (view) voting.take(*view);
+    if (!view) return;
+    view->look(rays, threads_);
+    voting.take(*view);
   }
 
   void keepCells(const mapping::MapRegion& region, const std::vector<CluxelChange>& changes, PointCells cells) {
@@ -176,6 +179,11 @@ class Survey {
       states.box = {geometry.min, geometry.max};
       states.centre = geometry.box.center.head<2>();
       survey_.states.push_back(states);
+      if (!states.was_away) continue;
+      ObjectBack back{states.object, mapping::cluxelsOf(region.objects[i]), states.box};
+      for (std::uint32_t& cluxel : back.cluxels) cluxel = region.number[cluxel];
+      std::sort(back.cluxels.begin(), back.cluxels.end());
+      survey_.back[states.before == perception::PresenceState::Present ? kBefore : kAfter].push_back(std::move(back));
     }
   }
 
@@ -199,14 +207,13 @@ class Survey {
     ChangedCluxels& all = survey_.cluxels;
     std::vector<RayFindings>& found = scan.time == kBefore ? all.before : all.after;
     if (found.empty() && parts.empty()) return;
-    perception::forEachRayBundle(map_.scanOf(scan.cloud.id), [&](const perception::RayBundle& bundle) {
-      inPieces(found.size(), threads_, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i)
-          if (all.is_told[i]) found[i].add(bundle.verdictAt(all.cluxels.center[i], kCluxelRays), scan.bit);
-      });
-      inPieces(parts.size(), threads_, [&](std::size_t begin, std::size_t end) {
-        lookAtCells(bundle, scan.bit, &PointCell::own, std::span(parts).subspan(begin, end - begin));
-      });
+    const perception::ScanRays rays(map_.scanOf(scan.cloud.id));
+    inPieces(found.size(), threads_, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i)
+        if (all.is_told[i]) found[i].add(rays.verdictAt(all.cluxels.center[i], kCluxelRays), scan.number);
+    });
+    inPieces(parts.size(), threads_, [&](std::size_t begin, std::size_t end) {
+      lookAtCells(rays, scan.number, &PointCell::own, std::span(parts).subspan(begin, end - begin));
     });
   }
 

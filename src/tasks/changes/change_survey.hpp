@@ -2,6 +2,7 @@
 // What points and rays tell of the scans before a time and of those from it on, region by region.
 #pragma once
 
+#include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
 #include <map>
@@ -17,6 +18,13 @@ namespace cluxel::tasks {
 /// The cluxels that one region may hold, where single tiles hold fewer.
 inline constexpr std::size_t kRegionCluxels = 100'000;
 
+/// An object that was away at the end of one time, though scans of both times hit it: its cluxels tell no change.
+struct ObjectBack {
+  std::uint32_t object = 0;            ///< number in MapReader::objects()
+  std::vector<std::uint32_t> cluxels;  ///< numbers in the scene of the map, ascending
+  Eigen::AlignedBox3d box;             ///< [m, map]
+};
+
 struct ChangeSurvey {
   std::vector<ObjectStates> states;                  ///< of each object but ground, by number
   ChangedCluxels cluxels;                            ///< those of possible clusters, and all that intersect one of them
@@ -25,6 +33,7 @@ struct ChangeSurvey {
   /// time found is known of those of possible parts.
   PointCells cells;
   std::array<std::vector<ChangeGroup>, 2> parts;          ///< possible ones before, and after; in `cells`
+  std::array<std::vector<ObjectBack>, 2> back{};          ///< there at the end of before only, and of after only
   std::map<std::uint32_t, std::size_t> stable_of_object;  ///< cluxels that are there at both times, by object
 };
 

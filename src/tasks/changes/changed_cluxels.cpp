@@ -3,9 +3,8 @@
 #include "tasks/changes/changed_cluxels.hpp"
 
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <cmath>
+#include <map>
 #include <utility>
 
 #include "perception/visibility/presence.hpp"
@@ -15,10 +14,6 @@ namespace cluxel::tasks {
 namespace {
 
 using perception::RayVerdict;
-
-void count(std::uint8_t& scans) {
-  if (scans < 255) ++scans;
-}
 
 class Clustering {
  public:
@@ -81,38 +76,70 @@ class Clustering {
     return box.sizes().minCoeff() < kThin_m;
   }
 
+  /// The scans that tell nothing of the thing while it was there, because it was away meanwhile.
+  ScanNumbers scansWithoutIt(const ChangeGroup& cluster, const ChangeGroup& around) const {
+    ScanNumbers hits, without;
+    for (const std::uint32_t cluxel : around)
+      if (const RayFindings* there = findingsAt(cluxel, true)) hits |= there->hits;
+    std::map<std::uint32_t, std::size_t> seen_through;
+    for (const std::uint32_t cluxel : cluster)
+      findingsAt(cluxel, true)->seen_through.forEach([&](std::uint32_t scan) { ++seen_through[scan]; });
+    for (const auto& [scan, cluxels] : seen_through)
+      if (cluxels >= kMinCluxels && !hits.contains(scan)) without.insert(scan);
+    return without;
+  }
+
   /// The chance that few rays hit the thing while it was there.
-  double sparseHits(const ChangeGroup& cluster, const ChangeGroup& around) const {
+  double sparseHits(const ChangeGroup& cluster, const ChangeGroup& around, const ScanNumbers& without) const {
     double hits = isThin(cluster) ? 0.5 : 2, passed = isThin(cluster) ? 2 : 0.5;
     for (const std::uint32_t cluxel : around)
-      if (const RayFindings* there = findingsAt(cluxel, true)) hits += there->sparse_hits, passed += there->passed;
+      if (const RayFindings* there = findingsAt(cluxel, true)) {
+        hits += static_cast<double>(there->sparse_hits.size());
+        passed += static_cast<double>(there->passed.sizeWithout(without));
+      }
     return std::min(hits / (hits + passed), kMostSparseHits);
   }
 
   /// Whether the thing lets so many rays through while it is there that scans without a hit do not show that it is
   /// gone. Rays find gaps in a crown: one scan sees through many places of it.
-  bool isPermeable(const ChangeGroup& cluster, const ChangeGroup& around) const {
+  bool isPermeable(const ChangeGroup& cluster, const ChangeGroup& around, const ScanNumbers& without) const {
     double hits = 2, seen_through = 0.1;
     for (const std::uint32_t cluxel : around)
-      if (const RayFindings* there = findingsAt(cluxel, true)) hits += there->hits, seen_through += there->seen_through;
+      if (const RayFindings* there = findingsAt(cluxel, true)) {
+        hits += static_cast<double>(there->hits.size());
+        seen_through += static_cast<double>(there->seen_through.sizeWithout(without));
+      }
     const double each = std::log(seen_through / (hits + seen_through) / (1 - kPresence.hit_when_gone));
     double log_odds = 0;
     for (const std::uint32_t cluxel : cluster) {
       const RayFindings& gone = *findingsAt(cluxel, false);
-      log_odds += std::min(each, 0.0) * (gone.seen_through + gone.passed);
+      log_odds += std::min(each, 0.0) * static_cast<double>(gone.seen_through.size() + gone.passed.size());
     }
     return log_odds > -kShown * static_cast<double>(cluster.size());
   }
 
+  /// Whether the rays that pass all go along the edge of something: of a roof or a wall that the sensor sees edge-on,
+  /// nearly as many end before each place as pass it.
+  bool isAtEdge(const ChangeGroup& cluster) const {
+    double passing = 0, stopped = 0;
+    for (const std::uint32_t cluxel : cluster) {
+      const RayFindings& gone = *findingsAt(cluxel, false);
+      passing += static_cast<double>(gone.passing_rays), stopped += static_cast<double>(gone.stopped_rays);
+    }
+    return stopped > kMostStopped * passing;
+  }
+
   bool isSure(const ChangeGroup& cluster) const {
     const ChangeGroup around = groups_.withNear(cluster);
-    return !isPermeable(cluster, around) && isShown(cluster, around, sparseHits(cluster, around));
+    const ScanNumbers without = scansWithoutIt(cluster, around);
+    return !isAtEdge(cluster) && !isPermeable(cluster, around, without) &&
+           isShown(cluster, around, sparseHits(cluster, around, without));
   }
 
   /// Whether the rays of the time without the thing show that it is gone. With more `sparse_hits` they show no less.
   bool isShown(const ChangeGroup& cluster, const ChangeGroup& around, double sparse_hits) const {
     std::size_t seen_through = 0;
-    for (const std::uint32_t cluxel : cluster) seen_through += findingsAt(cluxel, false)->is_seen_through ? 1 : 0;
+    for (const std::uint32_t cluxel : cluster) seen_through += findingsAt(cluxel, false)->seen_through.empty() ? 0 : 1;
     const double share = groups_.shareOfChanged(around), log_odds = logOddsOfScans(cluster, sparse_hits);
     const bool scans_agree = log_odds <= -kPresence.decided;
     if (share >= kWhole) return scans_agree || seen_through >= kMinCluxels || isLarge(cluster, sparse_hits, log_odds);
@@ -135,14 +162,15 @@ class Clustering {
   /// Log-odds of "there" from the scans that passed the thing, however many of its cluxels each of them passed.
   double logOddsOfScans(const ChangeGroup& cluster, double sparse_hits) const {
     const double each = std::log((1 - sparse_hits) / (1 - kPresence.hit_when_gone));
-    std::array<double, kScanBits> of_scan{};
+    std::map<std::uint32_t, double> of_scan;
     for (const std::uint32_t cluxel : cluster) {
       const RayFindings& gone = *findingsAt(cluxel, false);
-      for (std::uint64_t rest = gone.passed_scans | gone.through_scans; rest != 0; rest &= rest - 1)
-        of_scan[static_cast<std::size_t>(std::countr_zero(rest))] += std::min(each, 0.0);
+      ScanNumbers scans = gone.passed;
+      scans |= gone.seen_through;
+      scans.forEach([&](std::uint32_t scan) { of_scan[scan] += std::min(each, 0.0); });
     }
     double log_odds = 0;
-    for (const double sum : of_scan) log_odds += std::max(sum, -kMostOfScan);
+    for (const auto& [scan, sum] : of_scan) log_odds += std::max(sum, -kMostOfScan);
     return log_odds;
   }
 
@@ -154,17 +182,19 @@ class Clustering {
 
 }  // namespace
 
-void RayFindings::add(const perception::PlaceVerdict& found, std::uint64_t scan_bit) {
-  if (found.verdict == RayVerdict::Hit) is_hit = true, count(hits);
-  if (found.verdict == RayVerdict::Hit && found.is_sparse) count(sparse_hits);
-  if (found.verdict == RayVerdict::SeenThrough) is_seen_through = true, count(seen_through), through_scans |= scan_bit;
-  if (found.verdict == RayVerdict::FewPassed) count(passed), passed_scans |= scan_bit;
+void RayFindings::add(const perception::PlaceVerdict& found, std::uint32_t scan) {
+  if (found.verdict == RayVerdict::Hit) hits.insert(scan);
+  if (found.verdict == RayVerdict::Hit && found.is_sparse) sparse_hits.insert(scan);
+  if (found.verdict == RayVerdict::SeenThrough) seen_through.insert(scan);
+  if (found.verdict == RayVerdict::FewPassed) passed.insert(scan);
+  if (found.verdict == RayVerdict::SeenThrough || found.verdict == RayVerdict::FewPassed)
+    passing_rays += found.rays.passed, stopped_rays += found.stopped;
 }
 
 CluxelChange changeOf(const RayFindings& before, const RayFindings& after) {
-  if (before.is_hit && after.is_hit) return CluxelChange::Stable;
-  if (before.is_hit && after.isEmpty()) return CluxelChange::Vanished;
-  if (before.isEmpty() && after.is_hit) return CluxelChange::Appeared;
+  if (before.isHit() && after.isHit()) return CluxelChange::Stable;
+  if (before.isHit() && after.isEmpty()) return CluxelChange::Vanished;
+  if (before.isEmpty() && after.isHit()) return CluxelChange::Appeared;
   return CluxelChange::Undecided;
 }
 

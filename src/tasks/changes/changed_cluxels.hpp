@@ -7,30 +7,27 @@
 #include <vector>
 
 #include "perception/segments/scene.hpp"
-#include "perception/visibility/ray_bundle.hpp"
+#include "perception/visibility/scan_rays.hpp"
 #include "tasks/changes/change_groups.hpp"
+#include "tasks/changes/scan_numbers.hpp"
 
 namespace cluxel::tasks {
 
-/// Scans are bits of a word, numbered by time, modulo this.
-inline constexpr std::size_t kScanBits = 64;
-
 /// What the rays of a group of scans found at a cluxel.
 struct RayFindings {
-  bool is_hit = false;
-  bool is_seen_through = false;             ///< by several rays of one scan
-  std::uint8_t hits = 0, seen_through = 0;  ///< scans that hit the place, scans of which several rays saw through it
+  ScanNumbers hits{};          ///< scans that hit the place
+  ScanNumbers seen_through{};  ///< scans of which several rays saw through it
   /// Scans with so few rays near the place that they may have missed a thin thing: those that hit, those that passed.
-  std::uint8_t sparse_hits = 0, passed = 0;
-  /// Those of which few rays passed, and those that saw through with several, as bits. Scans that share a bit count
-  /// once.
-  std::uint64_t passed_scans = 0, through_scans = 0;
+  ScanNumbers sparse_hits{}, passed{};
+  /// Rays near the place of the scans that passed it: those that did, and those that were stopped before.
+  std::uint64_t passing_rays = 0, stopped_rays = 0;
 
+  bool isHit() const { return !hits.empty(); }
   /// Rays passed the place, and none ended there.
-  bool isEmpty() const { return !is_hit && (is_seen_through || passed > 0); }
+  bool isEmpty() const { return hits.empty() && !(seen_through.empty() && passed.empty()); }
 
   /// Adds what the rays of one scan found.
-  void add(const perception::PlaceVerdict& found, std::uint64_t scan_bit);
+  void add(const perception::PlaceVerdict& found, std::uint32_t scan);
 };
 
 enum class CluxelChange : std::uint8_t {
@@ -52,8 +49,12 @@ struct ChangedCluxels {
   std::vector<RayFindings> before, after;
 };
 
+/// Of the rays near the places of what is gone, so many may end before them for each that passes.
+inline constexpr double kMostStopped = 0.75;
+
 /// Connected clusters of five or more cluxels that changed alike, each ascending, in the order of their first cluxel. A
-/// cluster is dropped when the rays may have missed a thing that is still there:
+/// cluster is dropped when the rays may have missed a thing that is still there. Of the scans while it was there, those
+/// do not count that hit nothing in and around it and saw through five of its cluxels: it was away for a while.
 /// - Each scan that passed a cluxel adds log((1 - p) / 0.95), where p is the share of hits in and around the cluster
 ///   while the thing was there: on average of its cluxels the sum must be -3.5 or less, so that a crown needs more
 ///   scans than a car.
@@ -68,6 +69,7 @@ struct ChangedCluxels {
 ///   decided ones in and around it that lie at the height of its middle or higher, 90 % changed like it. Then all is
 ///   gone from there upwards, as of a hedge that was cut. What scans with poor poses miss is mostly an edge of
 ///   something that stays, and a gap in a crown has leaves beside it.
+/// And of the rays near its cluxels at most three ended before them for each four that passed.
 std::vector<ChangeGroup> clustersOf(CluxelChange kind, const ChangedCluxels& all);
 /// Those of the possible clusters that clustersOf() keeps. `all` need not hold more than these and what intersects
 /// them.

@@ -3,8 +3,8 @@
 #include "tasks/changes/changed_parts.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <map>
 #include <utility>
 
 #include "perception/visibility/presence.hpp"
@@ -13,12 +13,13 @@ namespace cluxel::tasks {
 
 namespace {
 
-constexpr int kMostHits = 2;  ///< scans that passed for each that hit
+constexpr std::size_t kMostHits = 2;  ///< scans that passed for each that hit
 
 /// What scans found at the cells of a group.
 struct GroupEvidence {
   double own_hits = 0, own_looks = 0, other_hits = 0, other_looks = 0;  ///< of all scans at all cells
   double own_ended = 0, own_rays = 0;                                   ///< rays of its own time
+  double passing = 0, stopped = 0;                                      ///< rays of the other time
   std::size_t scans = 0, passing_scans = 0;
   std::size_t foliage = 0;  ///< cells
 };
@@ -58,31 +59,38 @@ class Grouping {
   }
 
   std::size_t passingScans(const ChangeGroup& group) const {
-    std::size_t passing = 0;
-    for (std::size_t scan = 0; scan < kScanBits; ++scan) {
+    struct Cells {
       std::size_t hit = 0, passed = 0;
-      for (const std::uint32_t cell : group) {
-        hit += cells_[cell].other.hit_scans >> scan & 1U;
-        passed += (cells_[cell].other.through_scans & ~cells_[cell].other.hit_scans) >> scan & 1U;
-      }
-      passing += passed >= kPassedCells && passed > kMostHits * hit ? 1 : 0;
+    };
+    std::map<std::uint32_t, Cells> of_scan;
+    for (const std::uint32_t cell : group) {
+      const RayLooks& looks = cells_[cell].other;
+      looks.hit_scans.forEach([&](std::uint32_t scan) { ++of_scan[scan].hit; });
+      looks.through_scans.forEach([&](std::uint32_t scan) {
+        if (!looks.hit_scans.contains(scan)) ++of_scan[scan].passed;
+      });
     }
-    return passing;
+    return static_cast<std::size_t>(std::count_if(of_scan.begin(), of_scan.end(), [](const auto& scan) {
+      return scan.second.passed >= kPassedCells && scan.second.passed > kMostHits * scan.second.hit;
+    }));
   }
 
   GroupEvidence evidenceOf(const ChangeGroup& group) const {
     GroupEvidence found;
-    std::uint64_t scans = 0;
+    ScanNumbers scans;
     for (const std::uint32_t number : group) {
       const PointCell& cell = cells_[number];
-      found.own_hits += cell.own.hits(), found.own_looks += cell.own.hits() + cell.own.through();
-      found.other_hits += cell.other.hits(), found.other_looks += cell.other.hits() + cell.other.through();
+      const auto own_hits = static_cast<double>(cell.own.hits()), other_hits = static_cast<double>(cell.other.hits());
+      found.own_hits += own_hits, found.own_looks += own_hits + static_cast<double>(cell.own.through());
+      found.other_hits += other_hits, found.other_looks += other_hits + static_cast<double>(cell.other.through());
       found.own_ended += static_cast<double>(cell.own.rays.ended);
       found.own_rays += static_cast<double>(cell.own.rays.ended + cell.own.rays.passed);
+      found.passing += static_cast<double>(cell.other.passing_rays);
+      found.stopped += static_cast<double>(cell.other.stopped_rays);
       found.foliage += cell.is_foliage ? 1 : 0;
       scans |= cell.scans;
     }
-    found.scans = static_cast<std::size_t>(std::popcount(scans));
+    found.scans = scans.size();
     found.passing_scans = passingScans(group);
     return found;
   }
@@ -95,7 +103,7 @@ class Grouping {
 
   static bool isPassed(const GroupEvidence& found) {
     return found.scans >= kOwnScansOfTop && found.passing_scans >= kPassing &&
-           found.other_hits <= kRest * found.other_looks;
+           found.stopped <= kMostStopped * found.passing && found.other_hits <= kRest * found.other_looks;
   }
 
   /// Log-odds of "gone" from the looks of the other time.
@@ -137,7 +145,7 @@ class Grouping {
 
 ChangeState stateOf(const PointCell& cell) {
   if (cell.is_shared) return ChangeState::Stable;
-  const int hits = cell.other.hits(), through = cell.other.through();
+  const std::size_t hits = cell.other.hits(), through = cell.other.through();
   if (through > kMostHits * hits) return ChangeState::Changed;
   return hits > 0 && through < kMostHits * hits ? ChangeState::Stable : ChangeState::Undecided;
 }

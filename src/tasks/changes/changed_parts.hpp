@@ -20,7 +20,7 @@ ChangeState stateOf(const PointCell& cell);
 /// the share of hits of its own time, a look of the other time that passes adds log(0.95 / (1 - p)) to the log-odds of
 /// "gone", one that hits log(0.05 / p). A group is kept when it has 12 cells or more, 60 % of the looks of its own time
 /// hit it, at most 15 % of those of the other time do, three scans or more of the other time passed three cells of it
-/// and twice as many as they hit, and it is
+/// and twice as many as they hit, at most three rays near it ended before it for each four that passed, and it is
 /// - a top: 16 cells or more that three scans measured, with log-odds of 80 or more; and of the decided cells in and
 ///   around it that lie at the height of its middle or higher, 95 % changed like it. Nothing stays at its height; or
 /// - solid: mostly not of foliage; four scans measured it and four passed it; 70 % of the rays of its own time end

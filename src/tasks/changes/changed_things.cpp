@@ -62,6 +62,8 @@ class Things {
     const std::size_t clusters = things_.size();
     for (const ChangeGroup& part : partsAmong(survey_.parts[time_], cells_))
       if (!isNearChange(boxOf(cells_, part), clusters)) addGroups({part});
+    for (const ObjectBack& back : survey_.back[time_]) addWhole(back);
+    markPieces();
     return std::move(things_);
   }
 
@@ -104,6 +106,21 @@ class Things {
           (stable != survey_.stable_of_object.end() && stable->second > most->second) || !isGoneAsWhole(most->first);
     }
     things_.push_back(std::move(thing));
+  }
+
+  /// What was found of a part of it is part of this change.
+  void addWhole(const ObjectBack& back) {
+    std::erase_if(things_, [&](const ChangedThing& thing) { return thing.object == back.object; });
+    things_.push_back({back.cluxels, back.object, false, back.box});
+  }
+
+  /// Things of one object are parts of it.
+  void markPieces() {
+    std::map<std::uint32_t, std::size_t> things_of_object;
+    for (const ChangedThing& thing : things_)
+      if (thing.object) ++things_of_object[*thing.object];
+    for (ChangedThing& thing : things_)
+      thing.is_part = thing.is_part || (thing.object && things_of_object[*thing.object] > 1);
   }
 
   /// Whether the whole object is absent at the other time. An object without a state counts as such.

@@ -15,8 +15,9 @@ namespace cluxel::tasks {
 struct ChangedThing {
   std::vector<std::uint32_t> cluxels;   ///< numbers in the scene of the map, ascending
   std::optional<std::uint32_t> object;  ///< that most of them belong to; absent when most belong to none
-  bool is_part = false;                 ///< that object is not absent as a whole, or more of it stays than changed
-  Eigen::AlignedBox3d box;              ///< [m, map]
+  /// That object is not absent as a whole, more of it stays than changed, or other parts of it changed alike.
+  bool is_part = false;
+  Eigen::AlignedBox3d box;  ///< [m, map]
 };
 
 /// What vanished and what appeared.
@@ -25,7 +26,8 @@ struct ChangedThings {
 };
 
 /// A thing is a cluster of cluxels that changed alike (clustersOf), or where there is none within 0.3 m, a part of
-/// cluxels (changedParts). Things that stood side by side are told apart (sheetsOf).
+/// cluxels (changedParts). Things that stood side by side are told apart (sheetsOf). An object that was there at both
+/// times, but not at the end of one of them, is a thing, too (ChangeSurvey::back).
 ChangedThings changedThings(const ChangeSurvey& survey);
 
 }  // namespace cluxel::tasks

@@ -6,6 +6,8 @@
 
 namespace cluxel::tasks {
 
+using perception::PresenceState;
+
 ObjectStates statesOf(std::uint32_t object, std::span<const perception::ScanVotes> votes, double since_s) {
   constexpr perception::PresenceParams kParams;
   const auto later = std::find_if(votes.begin(), votes.end(), [&](const auto& vote) { return vote.time_s >= since_s; });
@@ -15,6 +17,10 @@ ObjectStates statesOf(std::uint32_t object, std::span<const perception::ScanVote
   ObjectStates states;
   states.object = object;
   states.before = stateAfter(before, thing, kParams), states.after = stateAfter(after, thing, kParams);
+  if (states.before == PresenceState::Present && states.after == PresenceState::Absent)
+    states.was_away = presenceOf(after, thing, kParams).has_value();
+  if (states.before == PresenceState::Absent && states.after == PresenceState::Present)
+    states.was_away = presenceOf(before, thing, kParams).has_value();
   states.log_odds_before = logOddsOfPresence(before, thing.share_of_hits, kParams);
   states.log_odds_after = logOddsOfPresence(after, thing.share_of_hits, kParams);
   return states;

@@ -14,7 +14,8 @@ struct ObjectStates {
   std::uint32_t object = 0;  ///< number in MapReader::objects()
   perception::PresenceState before = perception::PresenceState::NotObserved,
                             after = perception::PresenceState::NotObserved;
-  double log_odds_before = 0, log_odds_after = 0;    ///< of "there"
+  double log_odds_before = 0, log_odds_after = 0;  ///< of "there"
+  bool was_away = false;  ///< present at the end of one time, absent at that of the other, but there for a while then
   Eigen::AlignedBox3d box{};                         ///< of its cluxels [m, map]
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();  ///< of its upright box [m, map]
 };

@@ -55,12 +55,12 @@ std::size_t CellSums::Hash::operator()(const CellKey& key) const {
   return hash ^ hash >> 32U;
 }
 
-void CellSums::add(std::size_t time, std::uint64_t scan_bit, const Eigen::Vector3d& p_map, std::uint32_t cluxel) {
+void CellSums::add(std::size_t time, std::uint32_t scan, const Eigen::Vector3d& p_map, std::uint32_t cluxel) {
   PointSums& cell = sums_[cellOf(p_map)];
   if (cell.count[time] == 0) cell.cluxel[time] = cluxel;
   cell.sum[time] += p_map;
   ++cell.count[time];
-  cell.scans[time] |= scan_bit;
+  cell.scans[time].insert(scan);
 }
 
 PointCells CellSums::take(const mapping::MapRegion& region) {
@@ -84,16 +84,17 @@ PointCells CellSums::take(const mapping::MapRegion& region) {
   return cells;
 }
 
-void lookAtCells(const perception::RayBundle& bundle, std::uint64_t scan_bit, RayLooks PointCell::*looks,
+void lookAtCells(const perception::ScanRays& rays, std::uint32_t scan, RayLooks PointCell::*looks,
                  std::span<PointCell> cells) {
   for (PointCell& cell : cells) {
     if (cell.is_shared) continue;
-    const perception::PlaceVerdict found = bundle.verdictAt(cell.place, kRayParams);
+    const perception::PlaceVerdict found = rays.verdictAt(cell.place, kRayParams);
     RayLooks& of_cell = cell.*looks;
     of_cell.rays += found.rays;
-    if (found.verdict == RayVerdict::Hit) of_cell.hit_scans |= scan_bit;
-    if (found.verdict == RayVerdict::SeenThrough || found.verdict == RayVerdict::FewPassed)
-      of_cell.through_scans |= scan_bit;
+    if (found.verdict == RayVerdict::Hit) of_cell.hit_scans.insert(scan);
+    if (found.verdict != RayVerdict::SeenThrough && found.verdict != RayVerdict::FewPassed) continue;
+    of_cell.through_scans.insert(scan);
+    of_cell.passing_rays += found.rays.passed, of_cell.stopped_rays += found.stopped;
   }
 }
 

@@ -4,7 +4,6 @@
 
 #include <Eigen/Core>
 #include <array>
-#include <bit>
 #include <cstdint>
 #include <functional>
 #include <span>
@@ -13,19 +12,20 @@
 
 #include "mapping/map_regions.hpp"
 #include "perception/tile.hpp"
-#include "perception/visibility/ray_bundle.hpp"
+#include "perception/visibility/scan_rays.hpp"
 #include "tasks/changes/changed_cluxels.hpp"
 
 namespace cluxel::tasks {
 
-/// What the rays of some scans found at a place. Scans are bits (kScanBits).
+/// What the rays of some scans found at a place.
 struct RayLooks {
-  std::uint64_t hit_scans = 0;      ///< scans of which a ray ended there
-  std::uint64_t through_scans = 0;  ///< scans of which rays passed; those of which a ray ended there, too, do not count
+  ScanNumbers hit_scans{};      ///< scans of which a ray ended there
+  ScanNumbers through_scans{};  ///< scans of which rays passed; those of which a ray ended there, too, do not count
   perception::RayCounts rays{};
+  std::uint64_t passing_rays = 0, stopped_rays = 0;  ///< as in RayFindings
 
-  int hits() const { return std::popcount(hit_scans); }
-  int through() const { return std::popcount(through_scans & ~hit_scans); }
+  std::size_t hits() const { return hit_scans.size(); }
+  std::size_t through() const { return through_scans.sizeWithout(hit_scans); }
 };
 
 /// A cell lies in one tile of the map.
@@ -45,7 +45,7 @@ struct PointCell {
   /// The other time measured more than a third as many points in the cell. No rays are looked at then.
   bool is_shared = false;
   bool is_of_changed_cluxel = false;  ///< its cluxel vanished, of cells before, or appeared, of cells after
-  std::uint64_t scans = 0;            ///< that measured the points, as bits like those of RayLooks
+  ScanNumbers scans{};                ///< that measured the points
   RayLooks own{}, other{};            ///< of the scans of that time, and of the other time
 };
 
@@ -57,7 +57,7 @@ inline constexpr std::size_t kBefore = 0, kAfter = 1;
 class CellSums {
  public:
   /// `time`: kBefore or kAfter. `cluxel`: number in the scene of a region.
-  void add(std::size_t time, std::uint64_t scan_bit, const Eigen::Vector3d& p_map, std::uint32_t cluxel);
+  void add(std::size_t time, std::uint32_t scan, const Eigen::Vector3d& p_map, std::uint32_t cluxel);
   /// The cells; the sums are empty afterwards.
   PointCells take(const mapping::MapRegion& region);
 
@@ -69,7 +69,7 @@ class CellSums {
   struct PointSums {
     std::array<Eigen::Vector3d, 2> sum{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
     std::array<std::uint32_t, 2> count{}, cluxel{};
-    std::array<std::uint64_t, 2> scans{};
+    std::array<ScanNumbers, 2> scans{};
   };
   std::unordered_map<CellKey, PointSums, Hash> sums_;
 };
@@ -78,7 +78,7 @@ class CellSums {
 inline constexpr double kNearCells_m = 0.25;
 
 /// Compares the rays of a scan with those of the cells that are not shared.
-void lookAtCells(const perception::RayBundle& bundle, std::uint64_t scan_bit, RayLooks PointCell::*looks,
+void lookAtCells(const perception::ScanRays& rays, std::uint32_t scan, RayLooks PointCell::*looks,
                  std::span<PointCell> cells);
 
 /// Finds the cells within 0.25 m of a cell. Refers to the cells.

@@ -69,8 +69,11 @@ bool areOfOneSize(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return true;
 }
 
-std::string classOf(const mapping::MapReader& map, const ChangedThing& thing) {
-  return thing.object ? map.classOf(*thing.object) : std::string();
+/// Whether what vanished may be what appeared: things of one class and nearly one size, both whole or both parts of
+/// different objects.
+bool mayBeOne(const mapping::MapReader& map, const ChangedThing& gone, const ChangedThing& come) {
+  return gone.object && come.object && gone.object != come.object && gone.is_part == come.is_part &&
+         areOfOneSize(gone.box.sizes(), come.box.sizes()) && map.classOf(*gone.object) == map.classOf(*come.object);
 }
 
 /// Pairs what vanished with what appeared, nearest first.
@@ -79,11 +82,8 @@ std::vector<SiteChange> withMoves(const mapping::MapReader& map, const ChangedTh
   std::vector<std::tuple<double, std::size_t, std::size_t>> pairs;
   for (std::size_t i = 0; i < gone.size(); ++i)
     for (std::size_t j = 0; j < come.size(); ++j) {
-      if (gone[i].object && gone[i].object == come[j].object) continue;  // two parts of one object
       const double distance = (gone[i].box.center() - come[j].box.center()).norm();
-      if (distance <= kMaxMove_m && areOfOneSize(gone[i].box.sizes(), come[j].box.sizes()) &&
-          classOf(map, gone[i]) == classOf(map, come[j]))
-        pairs.emplace_back(distance, i, j);
+      if (distance <= kMaxMove_m && mayBeOne(map, gone[i], come[j])) pairs.emplace_back(distance, i, j);
     }
   std::sort(pairs.begin(), pairs.end());
   std::vector<bool> left(gone.size(), false), arrived(come.size(), false);

@@ -38,7 +38,7 @@ struct SiteChanges {
 };
 
 /// Compares the scans before `since_s` (default: the begin of the last visit) with those from it on. What vanished are
-/// clusters of cluxels that rays hit before and see through afterwards; what appeared, the other way round. Something
+/// clusters of cluxels that rays hit before and see through afterwards; what appeared, the other way round. An object
 /// of one class and nearly one size that vanished and appeared within 10 m has moved; nearest pairs first. Throws Error
 /// (InvalidArgument) when one side has no scan with time and pose. Cost and memory as for surveyOf().
 SiteChanges changesIn(const mapping::MapReader& map, std::optional<double> since_s, unsigned threads,
