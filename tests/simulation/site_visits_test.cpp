@@ -4,11 +4,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 #include <set>
 
 #include "cluxel/error.hpp"
 #include "simulation/campus_fixture.hpp"
+#include "simulation/site/stop_room.hpp"
 
 namespace cluxel::simulation {
 namespace {
@@ -164,6 +166,47 @@ TEST_F(SiteVisits, LaterVisitsMayHaveFewerStops) {
   few.params.later_stops = few.params.stops + 1;
   EXPECT_THROW(check(few.params), Error);
 }
+
+/// What may stand in the way of the robot.
+struct VisitsCase {
+  std::uint64_t seed;
+  double stops, size_m, later_stops;
+  std::size_t visits;
+};
+
+/// The nearest return of a scan that is not from the ground [m].
+double nearestThing_m(const Laser& laser, std::size_t stop) {
+  const SimulatedScan seen = laser.scanAt(stop);
+  const scan::ScanPoints& points = seen.scan.points;
+  double nearest = 1e300;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (seen.truth.instance[i] != 0)
+      nearest = std::min<double>(nearest, Eigen::Vector3f(points.x[i], points.y[i], points.z[i]).norm());
+  return nearest;
+}
+
+class RoomAtStops : public testing::TestWithParam<VisitsCase> {};
+
+TEST_P(RoomAtStops, IsLeftByAllThingsOnAllVisits) {
+  CampusParams params = test::withoutNoise(test::smallCampus(GetParam().seed));
+  params.stops = GetParam().stops, params.size_m = GetParam().size_m, params.later_stops = GetParam().later_stops;
+  params.points_per_stop = 1000;
+  const VisitedSite visited = visitSite(buildCampus(params), GetParam().visits);
+  for (std::size_t visit = 0; visit < visited.visits.size(); ++visit) {
+    const Campus& campus = visited.visits[visit];
+    const Laser laser(campus);
+    for (std::size_t stop = 0; stop < campus.stops.size(); ++stop) {
+      EXPECT_TRUE(hasRoom(campus, campus.stops[stop].translation())) << "visit " << visit << ", stop " << stop;
+      EXPECT_GT(nearestThing_m(laser, stop), kStopRoom_m) << "visit " << visit << ", stop " << stop;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(SiteVisits, RoomAtStops,
+                         testing::Values(VisitsCase{3, 8, 70, 0, 6},     // a car would move onto a stop
+                                         VisitsCase{302, 10, 70, 1, 9},  // vans would stand around the laser
+                                         VisitsCase{14, 12, 80, 0, 3},   // stops would lie in a fence
+                                         VisitsCase{5, 1, 50, 0, 4}));
 
 TEST_F(SiteVisits, IsAFunctionOfTheCampus) {
   const VisitedSite again = visitSite(*campus, 3);

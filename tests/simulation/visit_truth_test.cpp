@@ -65,6 +65,30 @@ TEST(VisitTruth, StatesThePointsThatScansMeasure) {
   EXPECT_GE(seen, 20U);
 }
 
+TEST(VisitTruth, CountsWhatIsLeftOfBushesThatWereCut) {
+  CampusParams params = test::smallCampus(7);
+  params.size_m = 60;
+  const VisitedSite site = visitSite(buildCampus(params), 3);
+  const rdf::ScratchFolder folder;
+  writeVisitTruth(site, folder.path(), 2);
+  auto stated = statedPoints(folder.path() / "visits.csv");
+  std::map<InstanceAndVisit, std::size_t> measured;
+  for (std::size_t visit = 0; visit < site.visits.size(); ++visit)
+    for (const SimulatedScan& scan : test::scanAll(site.visits[visit]))
+      for (const std::int32_t instance : scan.truth.instance) ++measured[{instance, visit}];
+  std::size_t bushes = 0;
+  for (const SiteEvent& event : site.events) {
+    if (event.kind != SiteEventKind::Cut) continue;
+    for (std::size_t visit = 0; visit < site.visits.size(); ++visit) {
+      const auto found = static_cast<double>(measured[{event.instance, visit}]);
+      const auto expected = static_cast<double>(stated[{event.instance, visit}]);
+      EXPECT_NEAR(expected, found, 15 + 0.25 * found) << "bush " << event.instance << ", visit " << visit;
+    }
+    ++bushes;
+  }
+  EXPECT_GT(bushes, 1U);
+}
+
 /// The points that the second visit measures on things that its vans hide, by instance.
 std::map<std::int32_t, std::size_t> pointsOnHiddenThings(const VisitedSite& site,
                                                          const std::set<std::int32_t>& hidden) {

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Each object stands alone in a scene of its own; rays that meet it there are cast in the scene of the visit.
+// Each object stands alone in a scene of its own, a bush that is cut in two; rays that meet it there are cast in the
+// scene of the visit.
 #include "simulation/laser/visit_truth.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
 #include <map>
 #include <memory>
 #include <optional>
@@ -126,13 +129,35 @@ AlignedBox3d padded(const AlignedBox3d& box) {
   return AlignedBox3d(box.min() - Vector3d::Constant(0.01), box.max() + Vector3d::Constant(0.01));
 }
 
+/// How an object looks from a visit on.
+struct Shape {
+  std::size_t since = 0;
+  std::unique_ptr<LoneObject> object;
+};
+
+AlignedBox3d boundsOf(const std::vector<CampusMesh>& meshes) {
+  AlignedBox3d bounds;
+  for (const CampusMesh& mesh : meshes)
+    for (const Eigen::Vector3f& vertex : mesh.vertices) bounds.extend(vertex.cast<double>());
+  return bounds;
+}
+
+std::vector<CampusMesh> surfacesOf(const Campus& campus, std::int32_t instance) {
+  std::vector<CampusMesh> surfaces;
+  for (const CampusMesh& mesh : campus.meshes)
+    if (mesh.instance == instance) surfaces.push_back(mesh);
+  return surfaces;
+}
+
 class TruthTables {
  public:
   TruthTables(const VisitedSite& site, unsigned threads)
       : site_(site), objects_(site.visits.front().objects), threads_(threads) {
     for (const auto& [instance, meshes] : surfacesOfObjects(site))
       if (instance >= 0 && isScored(objects_[static_cast<std::size_t>(instance)]))
-        lone_.emplace(instance, std::make_unique<LoneObject>(site.visits.front().params, meshes, boxOf(instance)));
+        addShape(instance, 0, meshes, objects_[static_cast<std::size_t>(instance)].box);
+    for (const SiteEvent& event : site.events)
+      if (event.kind == SiteEventKind::Cut) addRest(event);
     for (const Campus& campus : site.visits) scenes_.push_back(std::make_unique<VisitScene>(campus));
   }
 
@@ -142,15 +167,14 @@ class TruthTables {
         "new_ymax,new_zmax,points_before,points_after,new_points_before,new_points_after\n";
     for (const SiteEvent& event : site_.events) {
       const std::int32_t any = event.instance >= 0 ? event.instance : event.new_instance;
-      const AlignedBox3d gone = event.gone.isEmpty() ? boxOf(event.instance) : event.gone;
+      const AlignedBox3d gone = event.gone.isEmpty() ? boxOn(event.visit - 1, event.instance) : event.gone;
       const AlignedBox3d come = event.kind == SiteEventKind::Cut ? AlignedBox3d()
-                                : event.come.isEmpty()           ? boxOf(event.new_instance)
+                                : event.come.isEmpty()           ? boxOn(event.visit, event.new_instance)
                                                                  : event.come;
       table += std::to_string(event.visit) + "," + std::string(nameOf(event.kind)) + "," +
                className(objects_[static_cast<std::size_t>(any)]) + "," + std::to_string(event.instance) + "," +
                std::to_string(event.new_instance) + "," + boxText(gone) + "," + boxText(come) + "," +
-               pointsText(event.instance, gone, event.visit) + "," + pointsText(event.new_instance, come, event.visit) +
-               "\n";
+               pointsText(event, event.instance, gone) + "," + pointsText(event, event.new_instance, come) + "\n";
     }
     return table;
   }
@@ -158,13 +182,13 @@ class TruthTables {
   std::string visits() const {
     std::string table = "instance,class,visit,present,points\n";
     std::vector<std::int32_t> instances;
-    for (const auto& [instance, object] : lone_) instances.push_back(instance);
+    for (const auto& [instance, shapes] : shapes_) instances.push_back(instance);
     for (std::size_t visit = 0; visit < site_.visits.size(); ++visit) {
       std::set<std::int32_t> present;
       for (const CampusMesh& mesh : site_.visits[visit].meshes) present.insert(mesh.instance);
       std::vector<std::size_t> points(instances.size());
       parallelFor(instances.size(), threads_,
-                  [&](std::size_t i) { points[i] = pointsIn(instances[i], boxOf(instances[i]), visit); });
+                  [&](std::size_t i) { points[i] = pointsOnAll(shapeOn(visit, instances[i]), visit); });
       for (std::size_t i = 0; i < instances.size(); ++i)
         table += std::to_string(instances[i]) + "," + className(objects_[static_cast<std::size_t>(instances[i])]) +
                  "," + std::to_string(visit) + "," + (present.contains(instances[i]) ? "1," : "0,") +
@@ -174,24 +198,47 @@ class TruthTables {
   }
 
  private:
-  AlignedBox3d boxOf(std::int32_t instance) const {
-    return instance < 0 ? AlignedBox3d() : objects_[static_cast<std::size_t>(instance)].box;
+  void addShape(std::int32_t instance, std::size_t since, const std::vector<CampusMesh>& meshes,
+                const AlignedBox3d& bounds) {
+    shapes_[instance].push_back({since, std::make_unique<LoneObject>(site_.visits.front().params, meshes, bounds)});
   }
 
-  std::size_t pointsIn(std::int32_t instance, const AlignedBox3d& part, std::size_t visit) const {
-    return pointsOn(*lone_.at(instance), padded(part), *scenes_[visit]);
+  /// What is left of a bush that is cut.
+  void addRest(const SiteEvent& event) {
+    const std::vector<CampusMesh> meshes = surfacesOf(site_.visits[event.visit], event.instance);
+    addShape(event.instance, event.visit, meshes, boundsOf(meshes));
   }
 
-  /// Points on a part in the visit before an event and in its own; empty when there is no such part.
-  std::string pointsText(std::int32_t instance, const AlignedBox3d& part, std::size_t visit) const {
+  /// The object as it stands on a visit; before it is there as it arrives, afterwards as it left.
+  const LoneObject& shapeOn(std::size_t visit, std::int32_t instance) const {
+    const std::vector<Shape>& shapes = shapes_.at(instance);
+    const auto later = std::find_if(shapes.begin() + 1, shapes.end(), [&](const Shape& s) { return s.since > visit; });
+    return *std::prev(later)->object;
+  }
+
+  AlignedBox3d boxOn(std::size_t visit, std::int32_t instance) const {
+    return instance < 0 ? AlignedBox3d() : shapeOn(visit, instance).bounds;
+  }
+
+  std::size_t pointsOnAll(const LoneObject& object, std::size_t visit) const {
+    return pointsOn(object, padded(object.bounds), *scenes_[visit]);
+  }
+
+  /// Points on a part in the visit before an event and in its own; empty when there is no such part. What is cut off
+  /// counts in both as it was before.
+  std::string pointsText(const SiteEvent& event, std::int32_t instance, const AlignedBox3d& part) const {
     if (instance < 0 || part.isEmpty()) return ",";
-    return std::to_string(pointsIn(instance, part, visit - 1)) + "," + std::to_string(pointsIn(instance, part, visit));
+    const std::size_t before = event.visit - 1, shape_after = event.kind == SiteEventKind::Cut ? before : event.visit;
+    const auto points = [&](std::size_t shape_on, std::size_t visit) {
+      return std::to_string(pointsOn(shapeOn(shape_on, instance), padded(part), *scenes_[visit]));
+    };
+    return points(before, before) + "," + points(shape_after, event.visit);
   }
 
   const VisitedSite& site_;
   const std::vector<CampusObject>& objects_;
   unsigned threads_;
-  std::map<std::int32_t, std::unique_ptr<LoneObject>> lone_;
+  std::map<std::int32_t, std::vector<Shape>> shapes_;  ///< by the visit from which they hold
   std::vector<std::unique_ptr<VisitScene>> scenes_;
 };
 

@@ -8,6 +8,7 @@
 
 #include "simulation/makers/mesh_shapes.hpp"
 #include "simulation/site/campus_site.hpp"
+#include "simulation/site/stop_room.hpp"
 
 namespace cluxel::simulation {
 
@@ -25,16 +26,26 @@ constexpr double kRouteRoom_m = 1.4;  ///< between the van and the robot's route
 constexpr double kRoom_m = 0.25;      ///< between the van and other things
 constexpr double kFarthest_m = 15;    ///< from the route to what a van hides
 
+using Stops = std::vector<Isometry3d>;
+
+/// Calls `act` with each stop and the way to the next one, for the last with none.
+template <typename Act>
+void followRoute(const Stops& route, const Act& act) {
+  for (std::size_t i = 0; i < route.size(); ++i) {
+    const Vector3d from = route[i].translation(), to = route[std::min(i + 1, route.size() - 1)].translation();
+    act(from, Vector3d(to - from));
+  }
+}
+
 /// The place on the route that is nearest to `place`.
-Vector2d nearestOnRoute(const Campus& campus, const Vector2d& place) {
-  Vector2d nearest = campus.stops.front().translation().head<2>();
-  for (std::size_t i = 0; i + 1 < campus.stops.size(); ++i) {
-    const Vector2d from = campus.stops[i].translation().head<2>();
-    const Vector2d step = campus.stops[i + 1].translation().head<2>() - from;
+Vector2d nearestOnRoute(const Stops& route, const Vector2d& place) {
+  Vector2d nearest = route.front().translation().head<2>();
+  followRoute(route, [&](const Vector3d& stop, const Vector3d& way) {
+    const Vector2d from = stop.head<2>(), step = way.head<2>();
     const double along = std::clamp((place - from).dot(step) / std::max(step.squaredNorm(), 1e-12), 0.0, 1.0);
     const Vector2d candidate = from + along * step;
     if ((candidate - place).norm() < (nearest - place).norm()) nearest = candidate;
-  }
+  });
   return nearest;
 }
 
@@ -62,19 +73,23 @@ bool isFree(const Campus& campus, const Isometry3d& T_map_van) {
   return true;
 }
 
-bool leavesTheRouteFree(const Campus& campus, const Isometry3d& T_map_van) {
+/// Whether the van stays away from the route and from the stops of the visit, which lie beside it.
+bool leavesTheRouteFree(const Stops& route, const Stops& stops, const Isometry3d& T_map_van) {
   const AlignedBox2d footprint(Vector2d(-kLength_m / 2, -kWidth_m / 2), Vector2d(kLength_m / 2, kWidth_m / 2));
   const Isometry3d T_van_map = T_map_van.inverse();
+  const auto distanceTo = [&](const Vector3d& place) {
+    const Vector3d seen_from_van = T_van_map * place;
+    return footprint.exteriorDistance(Vector2d(seen_from_van.head<2>()));
+  };
   constexpr double kStep_m = 0.5;
-  for (std::size_t i = 0; i + 1 < campus.stops.size(); ++i) {
-    const Vector3d from = campus.stops[i].translation(), step = campus.stops[i + 1].translation() - from;
+  bool is_free = true;
+  followRoute(route, [&](const Vector3d& from, const Vector3d& step) {
     const int pieces = 1 + static_cast<int>(step.norm() / kStep_m);
-    for (int piece = 0; piece <= pieces; ++piece) {
-      const Vector3d on_route = T_van_map * Vector3d(from + step * piece / pieces);
-      if (footprint.exteriorDistance(Vector2d(on_route.head<2>())) < kRouteRoom_m) return false;
-    }
-  }
-  return true;
+    for (int piece = 0; piece <= pieces && is_free; ++piece)
+      is_free = distanceTo(from + step * piece / pieces) >= kRouteRoom_m;
+  });
+  return is_free && std::none_of(stops.begin(), stops.end(),
+                                 [&](const Isometry3d& stop) { return distanceTo(stop.translation()) <= kStopRoom_m; });
 }
 
 /// Half of the box's extent along a direction.
@@ -122,8 +137,8 @@ bool canBeHidden(const CampusObject& object) {
   return is_low && (is(ObjectClass::StreetSign) || is(ObjectClass::Bush) || is(ObjectClass::SmallObject));
 }
 
-std::optional<Isometry3d> placeOfVan(const Campus& campus, const CampusObject& hidden) {
-  const Vector2d middle = hidden.box.center().head<2>(), from = nearestOnRoute(campus, middle);
+std::optional<Isometry3d> placeOfVan(const Campus& campus, const Stops& route, const CampusObject& hidden) {
+  const Vector2d middle = hidden.box.center().head<2>(), from = nearestOnRoute(route, middle);
   const double distance = (middle - from).norm();
   if (distance < kRouteRoom_m + kWidth_m || distance > kFarthest_m) return std::nullopt;
   const Vector2d outwards = (middle - from).normalized();
@@ -132,7 +147,7 @@ std::optional<Isometry3d> placeOfVan(const Campus& campus, const CampusObject& h
   const double height = hidden.position.z() + terrain_at(place) - terrain_at(hidden.position.head<2>());
   const Isometry3d T_map_van =
       standing({place.x(), place.y(), height}, std::atan2(outwards.x(), -outwards.y()));  // along the route
-  if (!leavesTheRouteFree(campus, T_map_van) || !isFree(campus, T_map_van)) return std::nullopt;
+  if (!leavesTheRouteFree(route, campus.stops, T_map_van) || !isFree(campus, T_map_van)) return std::nullopt;
   return T_map_van;
 }
 

@@ -12,6 +12,7 @@
 #include "simulation/site/campus_random.hpp"
 #include "simulation/site/campus_site.hpp"
 #include "simulation/site/occluders.hpp"
+#include "simulation/site/stop_room.hpp"
 
 namespace cluxel::simulation {
 
@@ -49,6 +50,8 @@ class Visits {
     for (std::size_t i = 0; i < campus.objects.size(); ++i) drawArrival(campus, i, count);
     Campus& first = site_.visits.front();
     std::erase_if(first.meshes, [this](const CampusMesh& mesh) { return arrivalOf(mesh.instance) > 0; });
+    stops_.push_back(campus.stops);
+    for (std::size_t visit = 1; visit < count; ++visit) stops_.push_back(stopsOf(campus, visit));
     for (std::size_t visit = 1; visit < count; ++visit) addVisit(campus, visit);
     for (Campus& each : site_.visits) each.objects = site_.visits.back().objects;
   }
@@ -75,6 +78,7 @@ class Visits {
   void addVisit(const Campus& base, std::size_t visit) {
     Campus next = site_.visits.back();
     next.params.seed = mixedBits(seed_ + visit);  // other noise than on the visits before
+    next.stops = stops_[visit];
     const std::size_t known = next.objects.size();
     for (const std::int32_t van : std::exchange(vans_, {})) leave(next, van, visit);
     for (std::size_t i = 0; i < known; ++i) {
@@ -84,8 +88,7 @@ class Visits {
       else if (isThere(next, instance))
         change(next, instance, visit);
     }
-    hideThings(next, visit);
-    next.stops = stopsOf(base, visit);
+    hideThings(base, next, visit);
     site_.visits.push_back(std::move(next));
   }
 
@@ -121,7 +124,7 @@ class Visits {
     std::erase_if(campus.meshes, [instance](const CampusMesh& mesh) { return mesh.instance == instance; });
   }
 
-  /// A place 1.5 to 6 m away where nothing stands; none when ten attempts fail.
+  /// A place 1.5 to 6 m away where nothing stands and no stop lies; none when ten attempts fail.
   void move(Campus& next, std::int32_t instance, std::size_t visit, CampusRandom& random) {
     const CampusObject& object = next.objects[static_cast<std::size_t>(instance)];
     for (int attempt = 0; attempt < 10; ++attempt) {
@@ -129,7 +132,7 @@ class Visits {
       const Vector3d shift = alongGround(object.position, far_m * Vector2d(std::cos(angle), std::sin(angle)));
       AlignedBox3d place = object.box;
       place.translate(shift);
-      if (!isFree(next, place, instance, visit)) continue;
+      if (!isFree(next, place, instance, visit) || !leavesStopsFree(next, instance, shift, visit)) continue;
       const std::int32_t moved = copyOf(next, instance, instance, shift);
       erase(next, instance);
       site_.events.push_back({SiteEventKind::Moved, visit, instance, moved, {}, {}});
@@ -151,6 +154,14 @@ class Visits {
         return false;
     for (std::size_t object = 0; object < arrival_.size(); ++object)
       if (arrival_[object] >= visit && isTaken(object)) return false;
+    return true;
+  }
+
+  /// Whether the object, moved by `shift`, leaves the robot its room at the stops of this visit and of those to come.
+  bool leavesStopsFree(const Campus& campus, std::int32_t instance, const Vector3d& shift, std::size_t visit) const {
+    for (std::size_t later = visit; later < stops_.size(); ++later)
+      for (const Eigen::Isometry3d& stop : stops_[later])
+        if (!leavesRoom(campus, instance, shift, stop.translation())) return false;
     return true;
   }
 
@@ -188,6 +199,7 @@ class Visits {
     }
     if (!model) return;
     const Vector3d shift = old.position - next.objects[static_cast<std::size_t>(*model)].position;
+    if (!leavesStopsFree(next, *model, shift, visit)) return;
     const std::int32_t made = copyOf(next, *model, instance, shift);
     const AlignedBox3d now = next.objects[static_cast<std::size_t>(made)].box;
     const double differs_from = endOfPole(next, old.box.max().z() < now.max().z() ? instance : made);
@@ -229,7 +241,7 @@ class Visits {
 
   /// Vans stand before some of the things of the visit before, whether they are still there or not. They leave before
   /// the next visit.
-  void hideThings(Campus& next, std::size_t visit) {
+  void hideThings(const Campus& base, Campus& next, std::size_t visit) {
     const std::size_t known = site_.visits.back().objects.size();
     for (std::size_t i = 0; i < known; ++i) {
       const auto instance = static_cast<std::int32_t>(i);
@@ -237,7 +249,7 @@ class Visits {
       if (!canBeHidden(hidden) || !isThere(site_.visits.back(), instance)) continue;
       CampusRandom random{seed_, static_cast<std::uint64_t>(RandomUse::Occluder), visit, i};
       if (!random.chance(kIsHidden)) continue;
-      const auto T_map_van = placeOfVan(next, hidden);
+      const auto T_map_van = placeOfVan(next, base.stops, hidden);
       if (!T_map_van) continue;
       const std::int32_t van = addVan(next, *T_map_van, random);
       vans_.push_back(van);
@@ -250,15 +262,7 @@ class Visits {
   /// each stands in the middle of an equal share of the route.
   std::vector<Eigen::Isometry3d> stopsOf(const Campus& base, std::size_t visit) const {
     std::vector<Eigen::Isometry3d> stops = base.stops;
-    for (std::size_t i = 0; i + 1 < stops.size(); ++i) {
-      CampusRandom random = stream(i, 1000 + visit);
-      const double share = random.uniform(0.2, 0.8);
-      const Vector3d from = base.stops[i].translation(), step = base.stops[i + 1].translation() - from;
-      const double north = random.uniform(-0.5, 0.5), east = random.uniform(-0.5, 0.5);
-      const Vector3d to = from + share * step + Vector3d(east, north, 0);
-      const double height = from.z() - terrain_.heightAt(from.x(), from.y());
-      stops[i].translation() = Vector3d(to.x(), to.y(), terrain_.heightAt(to.x(), to.y()) + height);
-    }
+    for (std::size_t i = 0; i + 1 < stops.size(); ++i) stops[i].translation() = stopAfter(base, i, visit);
     const auto wanted = static_cast<std::size_t>(base.params.later_stops);
     if (wanted == 0) return stops;
     std::vector<Eigen::Isometry3d> kept;
@@ -266,9 +270,26 @@ class Visits {
     return kept;
   }
 
+  /// A place between a stop of the first visit and the next one, with room for the robot. The line between them cuts
+  /// the corners of the route, where fences and signs may stand: when attempts fail, the stop of the first visit.
+  Vector3d stopAfter(const Campus& base, std::size_t stop, std::size_t visit) const {
+    CampusRandom random = stream(stop, 1000 + visit);
+    const Vector3d from = base.stops[stop].translation(), step = base.stops[stop + 1].translation() - from;
+    const double height = from.z() - terrain_.heightAt(from.x(), from.y());
+    for (int attempt = 0; attempt < 10; ++attempt) {
+      const double share = random.uniform(0.2, 0.8);
+      const double north = random.uniform(-0.5, 0.5), east = random.uniform(-0.5, 0.5);
+      const Vector3d to = from + share * step + Vector3d(east, north, 0);
+      const Vector3d place(to.x(), to.y(), terrain_.heightAt(to.x(), to.y()) + height);
+      if (hasRoom(base, place)) return place;
+    }
+    return from;
+  }
+
   std::uint64_t seed_;
   const Terrain& terrain_;
-  std::vector<std::size_t> arrival_;  ///< the first visit that finds the object
+  std::vector<std::size_t> arrival_;                   ///< the first visit that finds the object
+  std::vector<std::vector<Eigen::Isometry3d>> stops_;  ///< by visit
   std::set<std::int32_t> cut_;
   std::vector<std::int32_t> vans_;  ///< that hide things on the newest visit
   VisitedSite site_;
