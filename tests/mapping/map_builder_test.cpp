@@ -100,6 +100,35 @@ TEST_F(MapBuilder, AScanThatIsGivenTwiceCountsOnce) {
   EXPECT_EQ(builtText(files, *inputs), *expected);
 }
 
+/// Keeps the notes on scans that were given before.
+class RepeatedScans : public ProgressSink {
+ public:
+  void note(std::string_view text) override {
+    if (text.find("given before") != std::string_view::npos) notes.emplace_back(text);
+  }
+  std::vector<std::string> notes;
+};
+
+TEST_F(MapBuilder, ScansThatAreGivenTwiceAreNoted) {
+  RepeatedScans once, twice, with_other_times;
+  buildMap(scansOf(campus->files()), *inputs, map(), {}, once);
+  EXPECT_TRUE(once.notes.empty());
+  const fs::path copy = folder.path() / "copy.pcd";
+  fs::copy_file(campus->files()[0], copy);
+  const std::string same_scan = copy.string() + " is the same scan as " + campus->files()[0].string();
+  buildMap(scansOf({campus->files()[0], copy}), *inputs, map(), {.force = true}, twice);
+  EXPECT_EQ(twice.notes, std::vector{"1 of 2 scans were given before and are not added again (" + same_scan + ")"});
+
+  std::ofstream manifest(folder.path() / "site.yaml");
+  for (const auto& [file, time] : {std::pair(campus->files()[0], 100), {copy, 200}, {copy, 150}})
+    manifest << (time == 100 ? "scans:\n" : "") << "  - {path: " << file.string() << ", time_s: " << time << "}\n";
+  manifest.close();
+  buildMap(scansOf({folder.path() / "site.yaml"}), *inputs, map(), {.force = true}, with_other_times);
+  EXPECT_EQ(with_other_times.notes, std::vector{"2 of 3 scans were given before and are not added again (" + same_scan +
+                                                ", ...); 2 of them have other times, of which the latest is kept"});
+  EXPECT_EQ(MapReader(map()).clouds().at(0).time_s, 200);
+}
+
 TEST_F(MapBuilder, WhereTheInputFilesLieDoesNotChangeTheMap) {
   for (const char* name : {"ontology", "rules", "models/oakland"}) {
     fs::create_directories((folder.path() / name).parent_path());

@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <future>
+#include <map>
 #include <optional>
 #include <set>
+#include <string>
 #include <utility>
 
 #include "base/free_memory.hpp"
@@ -60,6 +62,36 @@ std::vector<ObjectMembers> namesOfObjects(const rdf::ReadTransaction& transactio
   return names;
 }
 
+/// The scans that a build is given, to tell those that are given more than once.
+class GivenScans {
+ public:
+  void add(const Cloud& cloud) {
+    const auto [first, is_new] = first_.emplace(cloud.id, Given{cloud.source, cloud.time_s});
+    if (is_new) return;
+    if (repeated_++ == 0) example_ = cloud.source + " is the same scan as " + first->second.source;
+    if (cloud.time_s != first->second.time_s) ++other_times_;
+  }
+
+  /// Empty when each is given once.
+  std::string note() const {
+    if (repeated_ == 0) return {};
+    const std::string note = std::to_string(repeated_) + " of " + std::to_string(first_.size() + repeated_) +
+                             " scans were given before and are not added again (" + example_ +
+                             (repeated_ > 1 ? ", ...)" : ")");
+    if (other_times_ == 0) return note;
+    return note + "; " + std::to_string(other_times_) + " of them have other times, of which the latest is kept";
+  }
+
+ private:
+  struct Given {
+    std::string source;
+    std::optional<double> time_s;
+  };
+  std::map<scan::ScanId, Given> first_;
+  std::size_t repeated_ = 0, other_times_ = 0;
+  std::string example_;
+};
+
 class MapBuild {
  public:
   MapBuild(const scan::ScanSet& scans, ScanReader& reader, const ParsedInputs& parsed, WorkFile& work,
@@ -85,6 +117,7 @@ class MapBuild {
       }
     }
     for (const std::string& note : reading_notes_.totals()) sink_.note(note);
+    if (const std::string note = given_.note(); !note.empty()) sink_.note(note);
     return report_;
   }
 
@@ -142,6 +175,7 @@ class MapBuild {
 
   void store(ReadScan given, OpenBatch& batch) {
     for (const std::string& note : reading_notes_.add(given.reading)) sink_.note(note);
+    given_.add(given.scan.cloud);
     const std::uint64_t points = given.scan.cloud.point_count;
     const scan::ScanId id = given.scan.cloud.id;
     const std::optional<double> time_s = given.scan.cloud.time_s;
@@ -208,6 +242,7 @@ class MapBuild {
   const BuildParams& params_;
   ProgressSink& sink_;
   scan::ReadingNotes reading_notes_{scans_.remedies()};
+  GivenScans given_;
   std::optional<MapState> state_;  ///< the state in the file after the last commit
   TileStages stages_;
   BuildReport report_;

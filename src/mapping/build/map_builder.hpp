@@ -29,14 +29,15 @@ struct BuildParams {
 struct BuildReport {
   std::size_t scans = 0, tiles = 0, cluxels = 0, primitives = 0, objects = 0;
   std::uint64_t points = 0, quads = 0;
-  std::size_t scans_already_there = 0;  ///< of the unfinished build that was continued
+  std::size_t scans_already_there = 0;  ///< of the unfinished build that was continued, or given twice
 };
 
 /// Builds `file` from `scans`, under a BuildLock. Throws Error (InvalidArgument) for a finished map, or a store that no
 /// build has made, unless `force`. An unfinished build of the same inputs is continued when all its scans are among
 /// those given. With `force` the new map is built in FILE.building and replaces the old one by a rename, so that there
 /// is always a complete map. The operator's statements cannot be recomputed: they are copied from the old map at the
-/// end, unless they are to be dropped. Throws InputError for faulty scans, rules, ontology or model; nothing is written
+/// end, unless they are to be dropped. A scan that is given more than once counts once, with its latest time, and is
+/// noted. Throws InputError for faulty scans, rules, ontology or model; nothing is written
 /// then.
 BuildReport buildMap(const scan::ScanSet& scans, const MapInputs& inputs, const std::filesystem::path& file,
                      const BuildParams& params, ProgressSink& sink);
