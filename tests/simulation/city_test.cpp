@@ -193,6 +193,8 @@ TEST(City, RefusesWhatItCannotBe) {
   CityParams visited = smallCity(1, 1);
   visited.district.visits = 2;
   EXPECT_THAT(messageOf(visited), testing::HasSubstr("visited once"));
+  visited.district.visits = 1, visited.district.pose_error_m = 0.05;
+  EXPECT_THAT(messageOf(visited), testing::HasSubstr("visited once"));
 }
 
 TEST_F(CityFolder, RefusesDistrictsThatAreNotThere) {

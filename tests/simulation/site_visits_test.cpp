@@ -163,8 +163,20 @@ TEST_F(SiteVisits, LaterVisitsMayHaveFewerStops) {
     EXPECT_TRUE(kept[0].isApprox(all[all.size() / 4]));
     EXPECT_TRUE(kept[1].isApprox(all[3 * all.size() / 4]));
   }
+  few.params.visits = 3;
+  EXPECT_NO_THROW(check(few.params));
   few.params.later_stops = few.params.stops + 1;
   EXPECT_THROW(check(few.params), Error);
+}
+
+TEST(SiteVisitsParams, OfLaterVisitsNeedOne) {
+  for (const auto& [field, value] : {std::pair(&CampusParams::later_stops, 2.0), {&CampusParams::pose_error_m, 0.05}}) {
+    CampusParams params = test::smallCampus(1);
+    params.*field = value;
+    EXPECT_THROW(check(params), Error);
+    params.visits = 2;
+    EXPECT_NO_THROW(check(params));
+  }
 }
 
 /// What may stand in the way of the robot.
@@ -190,7 +202,7 @@ class RoomAtStops : public testing::TestWithParam<VisitsCase> {};
 TEST_P(RoomAtStops, IsLeftByAllThingsOnAllVisits) {
   CampusParams params = test::withoutNoise(test::smallCampus(GetParam().seed));
   params.stops = GetParam().stops, params.size_m = GetParam().size_m, params.later_stops = GetParam().later_stops;
-  params.points_per_stop = 1000;
+  params.points_per_stop = 1000, params.visits = static_cast<double>(GetParam().visits);
   const VisitedSite visited = visitSite(buildCampus(params), GetParam().visits);
   for (std::size_t visit = 0; visit < visited.visits.size(); ++visit) {
     const Campus& campus = visited.visits[visit];

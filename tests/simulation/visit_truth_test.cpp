@@ -36,7 +36,7 @@ std::map<InstanceAndVisit, std::size_t> statedPoints(const std::filesystem::path
 
 TEST(VisitTruth, StatesThePointsThatScansMeasure) {
   CampusParams params = test::smallCampus(12);
-  params.later_stops = 1;
+  params.visits = 2, params.later_stops = 1;
   params.points_per_stop = 20'000;
   const VisitedSite site = visitSite(buildCampus(params), 2);
   const rdf::ScratchFolder folder;

@@ -53,6 +53,17 @@ void checkRange(const CampusParams& params, const CampusParamInfo& info) {
                                               shortNumber(info.min) + " to " + shortNumber(info.max) + unit);
 }
 
+/// What is said of later visits needs one.
+void checkLaterVisits(const CampusParams& params) {
+  if (params.visits > 1) return;
+  const bool is_of_poses = params.pose_error_m != 0;
+  if (!is_of_poses && params.later_stops == 0) return;
+  throw Error(ErrorKind::InvalidArgument,
+              std::string(is_of_poses ? "pose-error" : "later-stops") +
+                  " concerns later visits, and there is one visit: choose visits = 2 or more, or leave " +
+                  (is_of_poses ? "pose-error" : "later-stops") + " at 0");
+}
+
 }  // namespace
 
 std::size_t maxStops(double size_m, double stop_distance_m) {
@@ -70,6 +81,7 @@ void check(const CampusParams& params) {
   if (params.later_stops != std::floor(params.later_stops) || params.later_stops > params.stops)
     throw Error(ErrorKind::InvalidArgument, "later visits cannot have " + shortNumber(params.later_stops) +
                                                 " stops: give a whole number of at most " + shortNumber(params.stops));
+  checkLaterVisits(params);
   const auto stops = static_cast<std::size_t>(params.stops);
   if (stops <= maxStops(params.size_m, params.stop_distance_m)) return;
   double roomy_m = std::ceil(params.size_m);

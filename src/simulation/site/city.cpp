@@ -65,11 +65,14 @@ void addDistrict(const Campus& campus, const DistrictPlace& place, const Vector3
 }  // namespace
 
 void check(const CityParams& params) {
+  if (params.district.visits != 1 || params.district.pose_error_m != 0 || params.district.later_stops != 0)
+    throw Error(
+        ErrorKind::InvalidArgument,
+        "a city is visited once: leave visits at 1, and pose-error and later-stops, which concern later visits, "
+        "at 0");
   check(params.district);
   checkEdge(params.columns, "columns");
   checkEdge(params.rows, "rows");
-  if (params.district.visits != 1)
-    throw Error(ErrorKind::InvalidArgument, "a city is visited once: leave the number of visits at 1");
 }
 
 City::City(const CityParams& params)
