@@ -3,23 +3,16 @@
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { join } from 'node:path';
-import { after, afterEach, before, beforeEach, test } from 'node:test';
-import { ask, askNamed, openPage, startBrowser, stopBrowser } from './browser.mjs';
+import { test } from 'node:test';
+import { ask, askNamed } from './browser.mjs';
+import { pageOfEachTest } from './open_pages.mjs';
 
 const folder = process.env.CLUXEL_PAGES, program = process.env.CLUXEL_PROGRAM;
 const map = join(folder, 'campus.clx'), html = join(folder, 'campus.html');
 const GRAPH = 'https://w3id.org/cluxel/graph/', GEOF = 'http://www.opengis.net/def/function/geosparql/';
 const PREFIXES = `PREFIX clx: <https://w3id.org/cluxel/ontology#> PREFIX geo: <http://www.opengis.net/ont/geosparql#>
   PREFIX geof: <${GEOF}> PREFIX g: <${GRAPH}>\n`;
-let open;
-
-before(startBrowser);
-after(stopBrowser);
-beforeEach(async () => { open = await openPage(html); });
-afterEach(async () => {
-  assert.deepEqual(open.faults, [], 'nothing on the console, no error, no request');
-  await open.close();
-});
+const open = pageOfEachTest(html);
 
 /** What the page's engine answers, or the fault that it tells. */
 const pageAnswer = (text) => open.page.evaluate(

@@ -3,23 +3,13 @@
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { after, afterEach, before, beforeEach, test } from 'node:test';
-import { openPage, startBrowser, stopBrowser, writeText } from './browser.mjs';
+import { test } from 'node:test';
+import { writeText } from './browser.mjs';
+import { pageOfEachTest } from './open_pages.mjs';
 
 const page_address = `${process.env.CLUXEL_SERVICE.trim()}page`;
 const token = readFileSync(join(process.env.CLUXEL_PAGES, 'token'), 'utf8').trim();
-let open;
-
-before(async () => {
-  await (await fetch(page_address)).arrayBuffer();
-  await startBrowser();
-});
-after(stopBrowser);
-beforeEach(async () => { open = await openPage(page_address); });
-afterEach(async () => {
-  assert.deepEqual(open.faults.filter((fault) => !/status of 503/.test(fault)), []);
-  await open.close();
-});
+const open = pageOfEachTest(page_address, { expected: /status of 503/ });
 
 /** Holds the first request to `address` back until `release` is called; then it is answered by `reply`. */
 async function heldBack(page, address, reply) {

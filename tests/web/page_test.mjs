@@ -4,25 +4,17 @@ import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { after, afterEach, before, beforeEach, test } from 'node:test';
+import { test } from 'node:test';
 import {
-  answered, ask, askNamed, coveredPixels, drawn, editorText, openPage, placeOf, seenWithoutGreenCones, settled, startBrowser,
-  states, stopBrowser,
+  answered, ask, askNamed, coveredPixels, drawn, editorText, placeOf, seenWithoutGreenCones, settled, states,
 } from './browser.mjs';
+import { pageOfEachTest } from './open_pages.mjs';
 
 const folder = process.env.CLUXEL_PAGES, program = process.env.CLUXEL_PROGRAM;
 const map = join(folder, 'campus.clx'), html = join(folder, 'campus.html');
 const cluxel = (...args) => execFileSync(program, args, { encoding: 'utf8', maxBuffer: 1e9 });
 const questions = JSON.parse(cluxel('tasks', '--json')).filter((task) => task.file);
-let open;
-
-before(startBrowser);
-after(stopBrowser);
-beforeEach(async () => { open = await openPage(html); });
-afterEach(async () => {
-  assert.deepEqual(open.faults, [], 'nothing on the console, no error, no request');
-  await open.close();
-});
+const open = pageOfEachTest(html);
 
 const firstRow = '.answer tbody tr.live:first-child';
 const cardTitle = (page) => page.textContent('.card h2');
@@ -247,8 +239,7 @@ test('the address brings camera, selection and question back', async () => {
   await open.page.waitForTimeout(400);
   const state = () => window.cluxelPage.viewer.camera.position.toArray().map((value) => Math.round(value * 10));
   const hash = await open.page.evaluate(() => location.hash), [camera, id] = [await open.page.evaluate(state), await selectedId(open.page)];
-  await open.close();
-  open = await openPage(html, { hash });
+  await open.again(html, { hash });
   await open.page.waitForSelector(firstRow);
   assert.deepEqual(await open.page.evaluate(state), camera);
   assert.equal(await selectedId(open.page), id);
@@ -301,8 +292,7 @@ test('a measured distance is that of the two points', async () => {
 });
 
 test('a narrow screen shows everything in one column', async () => {
-  await open.close();
-  open = await openPage(html, { width: 390, height: 780 });
+  await open.again(html, { width: 390, height: 780 });
   await askNamed(open.page, 'trees.rq');
   await open.page.click(firstRow);
   const { wide, tall } = await open.page.evaluate(() => ({ wide: document.documentElement.scrollWidth, tall: document.documentElement.scrollHeight }));
@@ -311,8 +301,7 @@ test('a narrow screen shows everything in one column', async () => {
 });
 
 test('labels, names and texts of the map are never markup', async () => {
-  await open.close();
-  open = await openPage(join(folder, 'markup.html'));
+  await open.again(join(folder, 'markup.html'));
   await askNamed(open.page, 'trees.rq');
   await open.page.click(firstRow);
   await open.page.click('text=All facts and observations');

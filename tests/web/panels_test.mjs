@@ -4,22 +4,15 @@ import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { after, afterEach, before, beforeEach, test } from 'node:test';
-import { askNamed, openPage, settled, startBrowser, states, stopBrowser, writeText } from './browser.mjs';
+import { test } from 'node:test';
+import { askNamed, openPage, settled, states, writeText } from './browser.mjs';
+import { pageOfEachTest } from './open_pages.mjs';
 
 const folder = process.env.CLUXEL_PAGES, program = process.env.CLUXEL_PROGRAM;
 const map = join(folder, 'visits.clx'), html = join(folder, 'visits.html');
 const cluxel = (...args) => execFileSync(program, args, { encoding: 'utf8', maxBuffer: 1e9 });
 const changes = JSON.parse(cluxel('changes', map, '--json'));
-let open;
-
-before(startBrowser);
-after(stopBrowser);
-beforeEach(async () => { open = await openPage(html); });
-afterEach(async () => {
-  assert.deepEqual(open.faults, [], 'nothing on the console, no error, no request');
-  await open.close();
-});
+const open = pageOfEachTest(html);
 
 const state = (page, name) => page.evaluate((key) => {
   const value = window.cluxelPage.store.state[key];
@@ -222,8 +215,7 @@ test('tabs are walked through by arrow keys and have names', async () => {
 });
 
 test('a narrow screen holds every panel', async () => {
-  await open.close();
-  open = await openPage(html, { width: 390, height: 780 });
+  await open.again(html, { width: 390, height: 780 });
   for (const id of ['tasks', 'visits', 'rules', 'questions']) {
     await open.page.click(`#tab-${id}`);
     if (id === 'visits') await toVisit(open.page, 1);

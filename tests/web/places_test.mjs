@@ -4,8 +4,9 @@ import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { after, afterEach, before, beforeEach, test } from 'node:test';
-import { ask, drawn, openPage, seenWithoutGreenCones, settled, startBrowser, stopBrowser } from './browser.mjs';
+import { test } from 'node:test';
+import { ask, drawn, seenWithoutGreenCones, settled } from './browser.mjs';
+import { pageOfEachTest } from './open_pages.mjs';
 
 const folder = process.env.CLUXEL_PAGES, program = process.env.CLUXEL_PROGRAM;
 const map = join(folder, 'campus.clx'), html = join(folder, 'campus.html');
@@ -13,15 +14,7 @@ const cluxel = (...args) => execFileSync(program, args, { encoding: 'utf8', maxB
 const rowsOf = (text) => JSON.parse(cluxel('query', map, '-e', text, '--format', 'json')).results.bindings
   .map((row) => Object.fromEntries(Object.entries(row).map(([name, term]) => [name, term.value])));
 const CLX = 'https://w3id.org/cluxel/ontology#';
-let open;
-
-before(startBrowser);
-after(stopBrowser);
-beforeEach(async () => { open = await openPage(html); });
-afterEach(async () => {
-  assert.deepEqual(open.faults, [], 'nothing on the console, no error, no request');
-  await open.close();
-});
+const open = pageOfEachTest(html);
 
 const selectedPlace = (page) => page.evaluate(() => window.cluxelPage.store.state.place?.iri ?? null);
 
@@ -152,8 +145,7 @@ test('a row that names a place leads to it, and the address brings it back', asy
   assert.equal(await selectedPlace(open.page), wanted);
   await open.page.waitForFunction(() => location.hash.includes('place='));
   const hash = await open.page.evaluate(() => location.hash);
-  await open.close();
-  open = await openPage(html, { hash });
+  await open.again(html, { hash });
   await open.page.waitForSelector('[aria-label="Selected place"]:not([hidden])');
   assert.equal(await selectedPlace(open.page), wanted);
 });

@@ -4,24 +4,14 @@ import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { after, afterEach, before, beforeEach, test } from 'node:test';
-import { askNamed, openPage, startBrowser, states, stopBrowser, writeText } from './browser.mjs';
+import { test } from 'node:test';
+import { askNamed, states, writeText } from './browser.mjs';
+import { pageOfEachTest } from './open_pages.mjs';
 
 const folder = process.env.CLUXEL_PAGES, program = process.env.CLUXEL_PROGRAM, map = join(folder, 'served.clx');
 const page_address = `${process.env.CLUXEL_SERVICE.trim()}page`, token = readFileSync(join(folder, 'token'), 'utf8').trim();
 const cluxel = (...args) => execFileSync(program, args, { encoding: 'utf8', maxBuffer: 1e9 });
-let open;
-
-before(async () => {
-  await (await fetch(page_address)).arrayBuffer();  // the service makes the page for the first request
-  await startBrowser();
-});
-after(stopBrowser);
-beforeEach(async () => { open = await openPage(page_address); });
-afterEach(async () => {
-  assert.deepEqual(open.faults, [], 'nothing on the console, no error, no request to others');
-  await open.close();
-});
+const open = pageOfEachTest(page_address);
 
 async function askTask(page, name, values) {
   await page.click('#tab-tasks');
