@@ -5,6 +5,7 @@
 #include <cassert>
 
 #include "base/file_bytes.hpp"
+#include "base/utc_time.hpp"
 #include "scan/formats/kitti_format.hpp"
 #include "scan/formats/las_format.hpp"
 #include "scan/formats/pcd_format.hpp"
@@ -89,7 +90,7 @@ LoadedScan loadScan(const ScanFile& file) {
   Scan& scan = loaded.scan;
   scan.T_map_sensor = poseOf(file, parsed);
   scan.has_pose = file.has_pose;
-  scan.time_s = file.time_s;
+  scan.time_s = toMicroseconds(file.time_s);  // as all later layers write and compare it
   scan.source = file.path.string();
   if (file.labels) parsed.points.label = readLabels(file, parsed);
   scan.points = std::move(parsed.points);

@@ -13,7 +13,8 @@ namespace cluxel::scan {
 /// Parses bytes of a known format. Throws InputError; never returns an empty scan.
 ParsedScan parseScan(std::string_view bytes, ScanFormat format, const std::string& file);
 
-/// Reads the file and its labels, converts the points to metres with z up, and gives the scan its pose, time and id.
+/// Reads the file and its labels, converts the points to metres with z up, and gives the scan its pose, time (to whole
+/// microseconds) and id.
 LoadedScan loadScan(const ScanFile& file);
 
 }  // namespace cluxel::scan

@@ -112,6 +112,21 @@ TEST_F(MeasuredScans, OfTwoThatAreAlikeTheLaterTimeStaysInAnyOrder) {
   }
 }
 
+TEST_F(MeasuredScans, AFinerTimeOfAnEarlierVersionIsTheSameTime) {
+  const auto environment = Environment::temporary();
+  WriteTransaction transaction = environment->write();
+  Scan scan = campus->scans()[0].scan;
+  scan.id = contentIdOf(scan);
+  for (const double time_s : {1700086400.1234567, 1700086400.123457}) {
+    scan.time_s = time_s;
+    storeScan(transaction, scan);
+    EXPECT_EQ(storedClouds(transaction).at(0).time_s, 1700086400.1234567);
+  }
+  scan.time_s = 1700086400.123458;
+  storeScan(transaction, scan);
+  EXPECT_EQ(storedClouds(transaction).at(0).time_s, 1700086400.123458);
+}
+
 TEST_F(MeasuredScans, OfTwoThatAreAlikeButForTimeAndPoseTheSecondIsRefused) {
   const auto environment = Environment::temporary();
   WriteTransaction transaction = environment->write();

@@ -105,6 +105,16 @@ TEST(ScanSet, TakesTimesFromTumPosesWhereTheScansHaveNone) {
   EXPECT_EQ(opened({folder.path()}).file(0).time_s, 12.25);
 }
 
+TEST(ScanSet, GivesScansTimesOfWholeMicroseconds) {
+  const ScratchFolder folder;
+  folder.write("a.xyz", "1 2 3\n");
+  folder.write("b.xyz", "1 2 3\n");
+  folder.write("times.txt", "1700086400.1234567\n1700086400.25\n");
+  const ScanSet set = opened({folder.path()});
+  EXPECT_EQ(set.load(0).time_s, 1700086400.123457);
+  EXPECT_EQ(set.load(1).time_s, 1700086400.25);
+}
+
 TEST(ScanSet, SaysOnceThatScansWithoutAPoseAreInTheMapFrame) {
   const ScratchFolder folder;
   folder.write("a.xyz", "1 2 3\n");

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "base/file_bytes.hpp"
+#include "base/utc_time.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/build/operator_statements.hpp"
 #include "mapping/change/map_compaction.hpp"
@@ -175,7 +176,7 @@ class Merge {
   static bool addScansOf(const MapReader& map, const Eigen::Isometry3d& T_first_map,
                          std::map<scan::ScanId, ScanInputs>& scans) {
     for (const Cloud& cloud : map.clouds()) {
-      ScanInputs inputs{cloud.has_pose, (T_first_map * cloud.T_map_sensor).matrix(), cloud.time_s};
+      ScanInputs inputs{cloud.has_pose, (T_first_map * cloud.T_map_sensor).matrix(), toMicroseconds(cloud.time_s)};
       const auto [known, is_new] = scans.emplace(cloud.id, inputs);
       if (is_new) continue;
       known->second.time_s = std::max(known->second.time_s, inputs.time_s);  // as when a scan is stored

@@ -6,6 +6,7 @@
 #include <iterator>
 #include <utility>
 
+#include "base/utc_time.hpp"
 #include "mapping/build/batch_size.hpp"
 #include "mapping/build/early_commit.hpp"
 #include "mapping/map_tables.hpp"
@@ -47,7 +48,7 @@ void ScanAdditions::countOtherTime(const scan::Scan& scan, std::optional<double>
   has_other_changes_ = has_other_changes_ || now_s != before_s;
   if (now_s != before_s)
     ++later_times_;
-  else if (scan.time_s && scan.time_s != before_s)
+  else if (scan.time_s && scan.time_s != toMicroseconds(before_s))
     ++earlier_times_;
 }
 

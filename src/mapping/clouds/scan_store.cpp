@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "base/parallel.hpp"
+#include "base/utc_time.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/clouds/packed_points.hpp"
 #include "mapping/clouds/scan_plausibility.hpp"
@@ -100,7 +101,7 @@ Cloud cloudOf(const scan::Scan& scan) {
 
 /// The later one does not depend on the order of the scans. An absent time compares as earlier.
 void keepLaterTime(rdf::WriteTransaction& transaction, Cloud there, std::optional<double> time_s) {
-  if (time_s <= there.time_s) return;
+  if (time_s <= toMicroseconds(there.time_s)) return;  // maps of earlier versions hold finer times
   there.time_s = time_s;
   transaction.putBlock(tables::kScans, tables::keyOf(there.id), toBytes(there));
 }
@@ -161,10 +162,8 @@ scan::Scan scanOf(const Cloud& cloud, scan::ScanPoints points) {
   return scan;
 }
 
-/// The years that xsd:dateTime writes with four digits.
 void requireTime(const scan::Scan& scan) {
-  constexpr double kFirst_s = -62135596800.0, kEnd_s = 253402300799.0;
-  if (scan.time_s && !(*scan.time_s >= kFirst_s && *scan.time_s < kEnd_s))
+  if (scan.time_s && !hasCalendarYear(*scan.time_s))
     throw InputError({.file = scan.source},
                      "its time of " + std::to_string(*scan.time_s) + " s lies outside the years 1 to 9999",
                      "times are seconds since 1970-01-01 UTC: is it in milliseconds or nanoseconds?");

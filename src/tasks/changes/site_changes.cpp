@@ -187,16 +187,29 @@ std::vector<PartStates> statesOfParts(const SiteChanges& changes) {
   return parts;
 }
 
+namespace {
+
+/// To whole microseconds, as the times of scans.
+double timeOfScans(double seconds, const std::string& text) {
+  if (hasCalendarYear(seconds)) return toMicroseconds(seconds);
+  throw Error(
+      ErrorKind::InvalidArgument,
+      "'" + text + "' lies outside of the years 1 to 9999: scans have times within them, in seconds since 1970");
+}
+
+}  // namespace
+
 double timeNamed(const std::string& text) {
   double seconds = 0;
   const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), seconds);
-  if (fault == std::errc() && end == text.data() + text.size() && std::isfinite(seconds)) return seconds;
+  if (fault == std::errc() && end == text.data() + text.size() && std::isfinite(seconds))
+    return timeOfScans(seconds, text);
   auto time = sparql::parseCalendar(sparql::CalendarKind::DateTime, text);
   if (!time) time = sparql::parseCalendar(sparql::CalendarKind::Date, text);
   if (!time)
     throw Error(ErrorKind::InvalidArgument,
                 "'" + text + "' is no time: write 2023-11-15T22:13:20Z, 2023-11-15, or seconds since 1970");
-  return time->timeline().toDouble();
+  return timeOfScans(time->timeline().toDouble(), text);
 }
 
 std::string changesJson(const mapping::MapReader& map, const SiteChanges& found) {
