@@ -139,6 +139,25 @@ TEST_F(ServeCommand, TheLengthOfABodyIsGivenOnceAndAsANumber) {
     EXPECT_EQ(statusOf(faulty), 400) << faulty;
 }
 
+TEST_F(ServeCommand, TheEndOfAConnectionIsToldOnce) {
+  const std::string post = "POST /sparql HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/sparql-query\r\n";
+  const auto countOf = [](const std::string& answer, const std::string& name) {
+    const std::string head = answer.substr(0, answer.find("\r\n\r\n"));
+    std::size_t count = 0;
+    for (std::size_t at = head.find(name); at != std::string::npos; at = head.find(name, at + 1)) ++count;
+    return count;
+  };
+  for (const std::string& ending : {std::string(), std::string("Connection: close\r\n")})
+    for (const char* refused : {"", "Content-Length: abc\r\n", "Content-Length: 99999999999\r\n"}) {
+      const std::string answer = shared().exchange(post + ending + refused + "\r\nASK {}");
+      EXPECT_EQ(countOf(answer, "\nConnection: close"), 1U) << answer;
+      EXPECT_EQ(countOf(answer, "Keep-Alive"), 0U) << answer;
+    }
+  EXPECT_EQ(countOf(shared().exchange("GET /maps HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n"),
+                    "\nConnection: close"),
+            1U);
+}
+
 TEST_F(ServeCommand, ATargetMayNameTheServer) {
   const auto get = [](const std::string& target) {
     return replyOf(shared().exchange("GET " + target + " HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n"));

@@ -74,7 +74,7 @@ void addView(CLI::App& app, Session& session) {
   command->add_option("-o,--output", options->output, "the page to write")->required()->check(named());
   command
       ->add_option("--max-points", options->max_points,
-                   "largest number of points to show; a larger map is sampled evenly")
+                   "about how many points to show at most; a larger map is sampled evenly")
       ->check(wholeAbove0());
   command
       ->add_option("--max-quads", options->max_quads,

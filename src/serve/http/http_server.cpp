@@ -109,6 +109,7 @@ struct HttpServer::Impl : httplib::Server {
     set_pre_routing_handler([this](const auto& in, auto& out) { return answerWithoutBody(in, out); });
     Post(R"([\s\S]*)", [this](const auto& in, auto& out, const auto& reader) { answerWithBody(in, out, reader); });
     set_error_handler([](const httplib::Request&, httplib::Response& out) { explain(out); });
+    set_post_routing_handler([](const httplib::Request&, httplib::Response& out) { closeOnce(out); });
     set_logger([this](const auto& in, const auto& out) { record(in, out); });
     // Without SO_REUSEPORT: two servers must not share a port unnoticed.
     set_socket_options([](socket_t sock) {
@@ -228,6 +229,14 @@ struct HttpServer::Impl : httplib::Server {
   void stopListening() {
     const std::lock_guard lock(stop_mutex);
     if (is_running() && svr_sock_ != INVALID_SOCKET) httplib::Server::stop();
+  }
+
+  /// A connection that ends is told once, whoever ends it: the client, cpp-httplib or endAfter(); nothing keeps it
+  /// then.
+  static void closeOnce(httplib::Response& out) {
+    if (!out.has_header("Connection")) return;
+    out.headers.erase("Connection"), out.headers.erase("Keep-Alive");
+    out.set_header("Connection", "close");
   }
 
   /// The connection ends after the response.
