@@ -9,8 +9,8 @@
 namespace cluxel::simulation {
 
 /// Writes two tables. Both tell of how many points the visit measures on a thing, or would if it stood there: rays that
-/// meet nothing before it and return from it or from behind it. Of a bush that was cut, what is left of it counts. Ground
-/// and buildings are left out.
+/// meet nothing before it and return from it or from behind it. Of a bush that was cut, what is left of it counts.
+/// Ground and buildings are left out.
 ///   events.csv: an event a line: visit, kind, class, instances, the box of what is gone and of what is new, and points
 ///   in these boxes on the visit before and on that visit; what is cut off counts in both as it was before;
 ///   visits.csv: an object and visit a line: whether it is there, and the points.
