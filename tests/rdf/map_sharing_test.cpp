@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "rdf/file/map_replacement.hpp"
 #include "rdf/map_file_fixture.hpp"
 #include "rdf/store/quad_store.hpp"
 
@@ -92,6 +93,71 @@ TEST_F(SharedMap, AReaderThatMayNotWriteTheLockFileReadsOneCommitWhileTheOwnerWr
   ::waitpid(child, &status, 0);
   ASSERT_TRUE(WIFEXITED(status));
   EXPECT_EQ(WEXITSTATUS(status), 0);
+}
+
+TEST_F(SharedMap, AReaderThatMayNotWriteTheLockFileReadsWhileAWriterIsAtWork) {
+  putGeneration(*create(), 0);
+  Talk talk;
+  const pid_t child = ::fork();
+  if (child == 0) {
+    ::alarm(60);
+    int result = 97;
+    talk.hearParent();
+    becomeAnotherUser();
+    try {
+      const ReadTransaction transaction = open(OpenMode::ReadOnly)->read();
+      result = readAll(transaction) + (transaction.block("t", "0")->front() == 'b' ? 0 : 2);
+    } catch (const Error&) {
+      result = 50;
+    }
+    ::_exit(result);
+  }
+  const auto owner = open();
+  putGeneration(*owner, 1);
+  WriteTransaction unfinished = owner->write();
+  for (int i = 0; i < kBlocks; ++i) unfinished.putBlock("t", std::to_string(i), std::string(30'000, 'z'));
+  takeRightToWrite();
+  talk.tellChild();
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 0);
+}
+
+/// Copies made beside quick commits are of one commit, or are refused.
+TEST_F(SharedMap, ACopyMadeBesideCommitsIsOfOneCommit) {
+  putGeneration(*create(), 0);
+  Talk talk;
+  const pid_t child = ::fork();
+  if (child == 0) {
+    ::alarm(60);
+    becomeAnotherUser();
+    talk.hearParent();
+    int read = 0, torn = 0;
+    for (int i = 0; i < 40; ++i) {
+      try {
+        torn += readAll(open(OpenMode::ReadOnly)->read());
+        ++read;
+      } catch (const MapBusy&) {
+      } catch (const Error&) {
+        ++torn;
+      }
+    }
+    ::_exit(torn > 0 ? 1 : read > 0 ? 0 : 2);
+  }
+  const auto owner = open();
+  takeRightToWrite();
+  talk.tellChild();
+  int status = 0, generation = 0;
+  while (::waitpid(child, &status, WNOHANG) == 0) {
+    try {
+      putGeneration(*owner, ++generation);
+    } catch (const MapBusy&) {  // a copy was made under the lock
+    }
+  }
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 0);
+  EXPECT_GT(generation, 5);
 }
 
 TEST_F(SharedMap, AReaderThatMayNotWriteTheMapMakesNoLockFile) {

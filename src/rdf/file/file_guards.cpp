@@ -14,6 +14,7 @@
 #include <thread>
 
 #include "base/file_bytes.hpp"
+#include "cluxel/error.hpp"
 #include "rdf/file/lmdb_handles.hpp"
 #include "rdf/file/map_replacement.hpp"
 
@@ -84,14 +85,26 @@ NameLock::~NameLock() {
   lockNameByte(descriptor_, F_UNLCK);
 }
 
-void lockAgainstWriters(int descriptor, WriteLock kind, const fs::path& file) {
+bool tryLockAgainstWriters(int descriptor, WriteLock kind, const fs::path& file) {
   const int operation = kind == WriteLock::Writing ? LOCK_EX : LOCK_SH;
+  if (::flock(descriptor, operation | LOCK_NB) == 0) return true;
+  if (errno != EWOULDBLOCK && errno != EINTR) failStore(file, errno, "lock the map");
+  return false;
+}
+
+void lockAgainstWriters(int descriptor, WriteLock kind, const fs::path& file) {
   const auto deadline = std::chrono::steady_clock::now() + kLockPatience;
-  while (::flock(descriptor, operation | LOCK_NB) != 0) {
-    if (errno != EWOULDBLOCK && errno != EINTR) failStore(file, errno, "lock the map");
+  while (!tryLockAgainstWriters(descriptor, kind, file)) {
     if (std::chrono::steady_clock::now() > deadline) throw MapBusy(file);
     std::this_thread::sleep_for(kLockPause);
   }
+}
+
+void refusePipe(const fs::path& file) {
+  std::error_code ignored;
+  const fs::file_status status = fs::status(file, ignored);
+  if (fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status))
+    throw Error(ErrorKind::StoreUnavailable, file.string() + ": is a pipe or a device, a map was expected");
 }
 
 }  // namespace cluxel::rdf

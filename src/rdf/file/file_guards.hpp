@@ -87,5 +87,11 @@ class NameLock {
 enum class WriteLock { Writing, Copying };
 /// Waits up to 1.5 s; throws MapBusy.
 void lockAgainstWriters(int descriptor, WriteLock kind, const std::filesystem::path& file);
+/// Does not wait: false when another process holds the lock.
+bool tryLockAgainstWriters(int descriptor, WriteLock kind, const std::filesystem::path& file);
+
+/// Opening a named pipe waits for a writer, which may never come. Throws Error (StoreUnavailable) for what is neither a
+/// file nor a folder, before it is opened.
+void refusePipe(const std::filesystem::path& file);
 
 }  // namespace cluxel::rdf

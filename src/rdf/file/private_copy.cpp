@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Copies a map under the lock that writers hold.
+// Copies a map under the lock that writers hold, or beside a writer whose commit does not come before the end of the
+// copy.
 #include "rdf/file/private_copy.hpp"
 
 #include <fcntl.h>
@@ -7,12 +8,15 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdint>
 #include <cstdlib>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "base/file_bytes.hpp"
 #include "cluxel/error.hpp"
+#include "rdf/file/check/map_file_head.hpp"
 #include "rdf/file/lmdb_handles.hpp"
 
 namespace cluxel::rdf {
@@ -46,6 +50,39 @@ int copyBytes(int from, int to) {
   }
 }
 
+/// Makes `copy` hold the bytes of the map alone.
+int copyAnew(int map, int copy) {
+  if (::ftruncate(copy, 0) != 0) return errno;
+  return copyBytes(map, copy);
+}
+
+/// Copies while another process may write; nothing when it has committed meanwhile. LMDB writes no page that belongs to
+/// the newest commit or to the one before, so that the pages of a commit stay until another two have followed. A commit
+/// reaches the meta pages last.
+std::optional<int> copyBesideWriter(int map, int copy, const fs::path& file) {
+  const std::uint64_t commit = readMapFileHead(map, file).transaction;
+  if (const int code = copyAnew(map, copy); code != 0) return code;
+  try {
+    const bool has_same = readMapFileHead(copy, file).transaction == commit;
+    if (has_same && readMapFileHead(map, file).transaction == commit) return 0;
+  } catch (const Error&) {  // a meta page was copied while it was written
+  }
+  return std::nullopt;
+}
+
+/// Copies the last commit; errno value, or 0.
+int copyCommit(int map, int copy, const fs::path& file) {
+  constexpr int kAttempts = 5;
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    if (tryLockAgainstWriters(map, WriteLock::Copying, file)) break;
+    if (const auto code = copyBesideWriter(map, copy, file)) return *code;
+  }
+  lockAgainstWriters(map, WriteLock::Copying, file);
+  const int code = copyAnew(map, copy);
+  ::flock(map, LOCK_UN);
+  return code;
+}
+
 }  // namespace
 
 PrivateCopy::PrivateCopy(const fs::path& map, int descriptor) {
@@ -53,11 +90,7 @@ PrivateCopy::PrivateCopy(const fs::path& map, int descriptor) {
   file_ = folder_.path() / "copy.clx";
   copy_ = Descriptor(::open(file_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600));
   int code = copy_.get() < 0 ? errno : 0;
-  if (code == 0) {
-    lockAgainstWriters(descriptor, WriteLock::Copying, map);
-    code = copyBytes(descriptor, copy_.get());
-    ::flock(descriptor, LOCK_UN);
-  }
+  if (code == 0) code = copyCommit(descriptor, copy_.get(), map);
   if (code != 0) failCopy(map, folder_.path(), code);
 }
 

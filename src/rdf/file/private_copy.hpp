@@ -11,8 +11,9 @@ namespace cluxel::rdf {
 /// The copy in a temporary folder, which is removed with this object.
 class PrivateCopy {
  public:
-  /// Copies the last commit of `map`, open as `descriptor`, while no process writes. Throws MapBusy when a writer does
-  /// not end within 1.5 s; Error (StoreUnavailable) when the temporary folder has no room.
+  /// Copies the last commit of `map`, open as `descriptor`. Writers wait meanwhile; one that has begun goes on, and
+  /// when it commits, the copy is made again. Throws MapBusy when commits follow each other too fast; Error
+  /// (StoreUnavailable) when the temporary folder has no room.
   PrivateCopy(const std::filesystem::path& map, int descriptor);
 
   const std::filesystem::path& file() const { return file_; }
