@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Errors on the command line: each kind has one exit code in every command, and says what, where and what to do.
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <nlohmann/json.hpp>
 
 #include "app/program_fixture.hpp"
@@ -49,6 +53,17 @@ TEST_F(Program, WhatIsNoMapIsExitCodeFiveInEveryCommandThatNeedsOne) {
     expectError(run(arguments), 5, "map");
   }
   EXPECT_EQ(run("doctor " + text).code, 1) << "doctor answers whether the file is a sound map";
+}
+
+TEST_F(Program, ANamedPipeInPlaceOfAMapIsExitCodeFive) {
+  const std::string pipe = path("pipe.clx").string();
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0666), 0);
+  const int end = ::open(pipe.c_str(), O_RDWR | O_CLOEXEC);  // who opens the pipe does not wait
+  for (const std::string command : {"info ", "doctor ", "compact "}) {
+    SCOPED_TRACE(command);
+    expectError(run(command + pipe), 5, "is a pipe or a device");
+  }
+  ::close(end);
 }
 
 TEST_F(Program, AnyOtherInputThatIsNotThereIsExitCodeFourInEveryCommand) {

@@ -60,10 +60,7 @@ OpenEnvironments& openEnvironments() {
 }
 
 int openFile(const fs::path& file, OpenMode mode, bool& can_write) {
-  std::error_code ignored;
-  if (const fs::file_status status = fs::status(file, ignored);
-      fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status))
-    throw Error(ErrorKind::StoreUnavailable, file.string() + ": is a pipe or a device, a map was expected");
+  refusePipe(file);
   const int creation = mode == OpenMode::Create ? O_CREAT | O_EXCL : 0;
   can_write = true;
   int descriptor = ::open(file.c_str(), O_RDWR | O_CLOEXEC | creation, 0666);

@@ -25,6 +25,7 @@ namespace {
 constexpr std::size_t kMaxFaults = 40;
 
 void checkStructure(const std::filesystem::path& file) {
+  refusePipe(file);
   const Descriptor descriptor(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
   if (descriptor.get() < 0) failStore(file, errno, "open the map");
   constexpr int kAttempts = 5;
