@@ -132,6 +132,16 @@ TEST_F(ServeCommand, TheAccessLogHasALineForEachRequest) {
   EXPECT_NE(text.find("127.0.0.1 \"GET /nothing\" 404"), std::string::npos) << text;
 }
 
+TEST_F(ServeCommand, AnAccessLogThatCannotBeWrittenIsToldOnce) {
+  Served served = serve("--log /dev/full");
+  EXPECT_EQ(served.get("/maps").status, 200);
+  EXPECT_EQ(served.get("/maps").status, 200);
+  EXPECT_EQ(served.stop(SIGTERM), 0);
+  const std::string text = readFile(path("serve.log")), note = "/dev/full: the access log cannot be written";
+  EXPECT_NE(text.find(note), std::string::npos) << text;
+  EXPECT_EQ(text.find(note), text.rfind(note)) << text;
+}
+
 /// Requests of which pieces are lost, repeated or replaced.
 std::string damaged(std::string bytes, std::mt19937& random) {
   const auto below = [&random](std::size_t n) { return random() % std::max<std::size_t>(n, 1); };

@@ -2,9 +2,11 @@
 // `cluxel serve`: maps over HTTP, until SIGINT or SIGTERM.
 #include <algorithm>
 #include <cctype>
+#include <cerrno>
 #include <chrono>
 #include <future>
 #include <mutex>
+#include <system_error>
 
 #include "app/command.hpp"
 #include "app/shared_options.hpp"
@@ -35,7 +37,7 @@ struct ServeArguments {
 /// Lines of requests, to a file or to stderr.
 class AccessLines {
  public:
-  explicit AccessLines(const ServeArguments& arguments) {
+  explicit AccessLines(const ServeArguments& arguments) : name_(arguments.log.string()) {
     if (arguments.quiet) return;
     refuseToReplaceMap(arguments.log);
     file_ = arguments.log.empty() ? stderr : std::fopen(arguments.log.c_str(), "ae");
@@ -57,12 +59,24 @@ class AccessLines {
     const std::lock_guard lock(mutex_);
     std::fprintf(file_, "%s %s \"%s %s\" %d %zu %.1f ms\n", dateTimeText(secondsNow()).c_str(), entry.client.c_str(),
                  entry.method.c_str(), target.c_str(), entry.status, entry.bytes, entry.seconds * 1000);
-    std::fflush(file_);
+    const bool is_written = std::fflush(file_) == 0 && std::ferror(file_) == 0;
+    if (!is_written) tellFailure(errno);
+    is_failing_ = !is_written;
+    std::clearerr(file_);
   }
 
  private:
+  /// Once, until lines are written again. Requests are answered all the same.
+  void tellFailure(int code) const {
+    if (!is_failing_ && file_ != stderr)
+      std::fprintf(stderr, "note: %s: the access log cannot be written (%s); requests are served without it\n",
+                   name_.c_str(), std::generic_category().message(code).c_str());
+  }
+
+  std::string name_;
   std::FILE* file_ = nullptr;
   std::mutex mutex_;
+  bool is_failing_ = false;  ///< the last line could not be written
 };
 
 std::string tokenIn(const fs::path& file) {
