@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <utility>
 
 #include "base/ascii.hpp"
 #include "base/file_bytes.hpp"
@@ -32,15 +33,17 @@ bool isScanOfPlainFolder(const fs::path& path) {
   return std::find(known.begin(), known.end(), extension) != known.end();
 }
 
-/// Whether an entry of a folder is read. A broken link with the name of a scan is an error: without it, the scans that
+bool isBrokenLink(const fs::path& path) {
+  std::error_code error;
+  return fs::is_symlink(path, error) && !fs::exists(path, error);
+}
+
+/// Whether an entry of a folder is read. A broken link with the name of a scan counts: without it, the scans that
 /// follow would get the poses of their predecessors.
 bool isShownFile(const fs::path& path) {
   if (path.filename().string().starts_with('.')) return false;
   std::error_code error;
-  if (fs::is_regular_file(path, error)) return true;
-  if (fs::is_symlink(path, error) && !fs::exists(path, error) && isScanOfPlainFolder(path))
-    throw InputError({.file = path.string()}, "the link leads nowhere", "correct or delete it");
-  return false;
+  return fs::is_regular_file(path, error) || (isScanOfPlainFolder(path) && isBrokenLink(path));
 }
 
 /// The files of a folder in natural order of their names, without hidden ones (names that begin with a dot).
@@ -114,12 +117,16 @@ void addKittiPoses(FolderLayout& layout, const fs::path& folder) {
 FolderLayout kittiLayout(const fs::path& folder) {
   FolderLayout layout = binLayout(filesOf(folder / "velodyne"), folder / "labels");
   layout.frames_are_numbers = true;
-  for (LayoutScan& scan : layout.scans) {
-    const auto frame = frameNumberOf(scan.file.path);
-    if (!frame)
-      throw InputError({.file = scan.file.path.string()},
-                       "the name of a KITTI scan must be its frame number, such as 000042.bin");
-    scan.frame = *frame;
+  for (LayoutScan& scan : std::exchange(layout.scans, {})) {
+    if (const auto frame = frameNumberOf(scan.file.path)) {
+      scan.frame = *frame;
+      layout.scans.push_back(std::move(scan));
+    } else {
+      const fs::path& path = scan.file.path;
+      layout.misnamed.push_back(
+          {path, InputError({.file = path.string()},
+                            "the name of a KITTI scan must be its frame number, such as 000042.bin")});
+    }
   }
   addKittiPoses(layout, folder);
   return layout;
@@ -206,6 +213,20 @@ bool holdsOnlyBins(const std::vector<fs::path>& files) {
          std::any_of(files.begin(), files.end(), [](const fs::path& path) { return lowerExtension(path) == ".bin"; });
 }
 
+/// A scan of a folder of any scans.
+LayoutScan plainScan(const fs::path& path, std::size_t frame) {
+  LayoutScan scan;
+  scan.file.path = path;
+  scan.frame = frame;
+  try {
+    if (isBrokenLink(path)) throw InputError({.file = path.string()}, "the link leads nowhere", "correct or delete it");
+    scan.file.format = formatOf(path);
+  } catch (const InputError& fault) {
+    scan.fault = fault;
+  }
+  return scan;
+}
+
 FolderLayout plainLayout(const fs::path& folder, const std::vector<fs::path>& files) {
   FolderLayout layout;
   std::vector<fs::path> scans, texts;
@@ -215,13 +236,8 @@ FolderLayout plainLayout(const fs::path& folder, const std::vector<fs::path>& fi
     else if (lowerExtension(path) == ".txt" && !isKnownSideFile(path))
       texts.push_back(path);
   }
-  for (const fs::path& path : scans.empty() ? texts : scans) {
-    LayoutScan scan;
-    scan.file.path = path;
-    scan.file.format = formatOf(path);
-    scan.frame = layout.scans.size();
-    layout.scans.push_back(scan);
-  }
+  for (const fs::path& path : scans.empty() ? texts : scans)
+    layout.scans.push_back(plainScan(path, layout.scans.size()));
   addPlainPoses(layout, folder, files);
   return layout;
 }
@@ -237,7 +253,8 @@ FolderLayout layoutOfFolder(const fs::path& folder) {
     layout = freiburgLayout(folder, files);
   else
     layout = holdsOnlyBins(files) ? looseBinLayout(folder, files) : plainLayout(folder, files);
-  if (layout.scans.empty()) throw InputError({.file = folder.string()}, "the folder holds no scans", kKnownFormats);
+  if (layout.scans.empty() && layout.misnamed.empty())
+    throw InputError({.file = folder.string()}, "the folder holds no scans", kKnownFormats);
   return layout;
 }
 

@@ -19,11 +19,13 @@ struct LayoutScan {
   ScanFile file;
   std::size_t frame = 0;
   std::optional<Eigen::Vector3d> outer_origin = {};  ///< of the map frame, when the pose is in an outer frame
-  bool needs_pose = false;  ///< one of several in their own sensor frames, which make no map without poses
+  std::optional<InputError> fault = {};  ///< of a scan that keeps its line in the poses file, but cannot be read
+  bool needs_pose = false;               ///< one of several in their own sensor frames, which make no map without poses
 };
 
 struct FolderLayout {
-  std::vector<LayoutScan> scans;  ///< by name, in natural order; poses not yet attached
+  std::vector<LayoutScan> scans;     ///< by name, in natural order; poses not yet attached
+  std::vector<FaultyScan> misnamed;  ///< files that should be scans, but whose names tell no frame
   std::optional<std::filesystem::path> poses_file;
   std::vector<std::filesystem::path> other_poses_files;  ///< when there are several: all but `poses_file`
   std::optional<std::filesystem::path> times_file;
@@ -32,7 +34,7 @@ struct FolderLayout {
   std::optional<Eigen::Isometry3d> T_camera_sensor;  ///< KITTI's Tr
 };
 
-/// The layout of a folder. Throws InputError when it holds no scans.
+/// The layout of a folder. Throws InputError when it holds no scans; the fault of one scan stands beside it.
 FolderLayout layoutOfFolder(const std::filesystem::path& folder);
 
 /// The folder that may hold the pose and time of a single scan file: its own, or the parent of velodyne/.

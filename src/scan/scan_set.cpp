@@ -6,14 +6,13 @@
 #include <array>
 #include <functional>
 #include <map>
-#include <utility>
 
 #include "base/file_bytes.hpp"
 #include "cluxel/error.hpp"
-#include "scan/formats/las_crs.hpp"
 #include "scan/formats/manifest.hpp"
 #include "scan/formats/pcd_format.hpp"
 #include "scan/input_paths.hpp"
+#include "scan/las_frame.hpp"
 #include "scan/scan_layouts.hpp"
 #include "scan/scan_loader.hpp"
 
@@ -49,26 +48,27 @@ class ScanGatherer {
   std::vector<ScanFile> finish() {
     if (!params_->poses.empty()) assignGivenPoses();
     std::vector<ScanFile> files;
+    LasFrame las(*params_, *sink_);
     for (LayoutScan& scan : scans_) {
-      if (!scan.file.has_pose && scan.file.format == ScanFormat::Pcd) {
-        if (const auto viewpoint = viewpointOf(scan.file.path)) {
-          scan.file.T_map_sensor = *viewpoint;
-          scan.file.has_pose = true;
-        }
-      }
       if (scan.needs_pose && !scan.file.has_pose)
         throw InputError({.file = scan.file.path.string()},
                          "has no pose: the KITTI scans (.bin) of a folder lie each in the frame of its sensor",
                          params_->remedies.poses + ", or put poses.txt beside the scans");
-      if (scan.outer_origin) scan.file.T_map_sensor.pretranslate(Eigen::Vector3d(-*scan.outer_origin));
-      scan.file.T_map_sensor = toMetresZUp(scan.file.T_map_sensor, params_->frame);
-      scan.file.frame = params_->frame;
-      files.push_back(std::move(scan.file));
+      try {
+        if (scan.fault) throw InputError(*scan.fault);
+        bringToMapFrame(scan);
+        las.read(scan.file);
+        files.push_back(std::move(scan.file));
+      } catch (const InputError& fault) {
+        leaveOut({scan.file.path, fault});
+      }
     }
     noteScansWithoutPose(files);
-    readCrs(files);
+    if (crs_.empty()) crs_ = las.crs();  // else a manifest states it
     return files;
   }
+
+  const std::vector<FaultyScan>& faulty() const { return faulty_; }
 
   Eigen::Vector3d mapOrigin() const {
     return toMetresZUp(map_origin_.value_or(Eigen::Vector3d::Zero()), params_->frame);
@@ -81,7 +81,25 @@ class ScanGatherer {
     if (const auto manifest = manifestIn(folder); manifest && !isReading(*manifest)) return addManifest(*manifest);
     const fs::path root = isVelodyneFolder(folder) ? folder / ".." : folder;
     const FolderLayout& layout = layoutAt(root);
+    for (const FaultyScan& scan : layout.misnamed) leaveOut(scan);
     scans_.insert(scans_.end(), layout.scans.begin(), layout.scans.end());
+  }
+
+  void leaveOut(const FaultyScan& scan) {
+    if (!params_->leaves_out_faulty) throw InputError(scan.fault);
+    faulty_.push_back(scan);
+  }
+
+  void bringToMapFrame(LayoutScan& scan) const {
+    if (!scan.file.has_pose && scan.file.format == ScanFormat::Pcd) {
+      if (const auto viewpoint = viewpointOf(scan.file.path)) {
+        scan.file.T_map_sensor = *viewpoint;
+        scan.file.has_pose = true;
+      }
+    }
+    if (scan.outer_origin) scan.file.T_map_sensor.pretranslate(Eigen::Vector3d(-*scan.outer_origin));
+    scan.file.T_map_sensor = toMetresZUp(scan.file.T_map_sensor, params_->frame);
+    scan.file.frame = params_->frame;
   }
 
   static bool isVelodyneFolder(const fs::path& folder) {
@@ -237,53 +255,13 @@ class ScanGatherer {
                 "): the position of the sensor is unknown, so visibility queries answer \"not observed\"");
   }
 
-  /// The coordinate system of LAS files, unless a manifest states one. Only poses and map_origin of a manifest lead out
-  /// of it, so scans of different systems do not fit in one map.
-  void readCrs(const std::vector<ScanFile>& files) {
-    const ScanFile* first = nullptr;
-    std::string crs;
-    for (const ScanFile& file : files) {
-      if (file.format != ScanFormat::Las) continue;
-      const auto stated = lasCrsOf(file.path);
-      if (!stated) continue;
-      if (!std::exchange(unit_noted_, true)) noteUnit(*stated, file.path);
-      if (stated->crs.empty()) {
-        sink_->note(file.path.string() + ": its coordinate system is not kept: " + stated->fault);
-        continue;
-      }
-      if (first && crs != stated->crs)
-        throw InputError(
-            {.file = file.path.string()},
-            "has another coordinate system than " + first->path.string() + ": " + stated->crs + " and " + crs,
-            "one map has one frame: transform one of them");
-      first = &file;
-      crs = stated->crs;
-    }
-    if (!first || !crs_.empty()) return;
-    if (params_->frame == InputFrame{})
-      crs_ = crs;
-    else
-      sink_->note(first->path.string() + ": its coordinate system (" + crs +
-                  ") is not kept, because the coordinates are converted to metres with z up");
-  }
-
-  void noteUnit(const LasCrs& stated, const fs::path& path) const {
-    if (stated.is_geographic)
-      sink_->note(path.string() + ": warning: its coordinates are degrees (" + stated.crs +
-                  "); a map needs metres: project the file first");
-    else if (const auto unit = unitOf(stated); unit && *unit != params_->frame.unit)
-      sink_->note(path.string() + ": warning: the unit of its coordinate system is " + std::string(nameOf(*unit)) +
-                  ", but its coordinates are read as " + std::string(nameOf(params_->frame.unit)) + "; " +
-                  params_->remedies.unit);
-  }
-
   const ScanSetParams* params_;
   ProgressSink* sink_;
   std::vector<LayoutScan> scans_;
   std::map<fs::path, FolderLayout> layouts_;  ///< by absolute path
   std::vector<fs::path> open_manifests_;      ///< being read, outermost first
   std::optional<fs::path> without_layout_;    ///< the first scan without a folder that states poses or times
-  bool unit_noted_ = false;
+  std::vector<FaultyScan> faulty_;
   std::optional<Eigen::Vector3d> map_origin_;
   std::string crs_;
 };
@@ -300,6 +278,7 @@ ScanSet ScanSet::open(const std::vector<fs::path>& inputs, const ScanSetParams& 
   for (const fs::path& input : inputs) gatherer.add(input);
   ScanSet set;
   set.files_ = gatherer.finish();
+  set.faulty_ = gatherer.faulty();
   set.map_origin_ = gatherer.mapOrigin();
   set.crs_ = gatherer.crs();
   set.remedies_ = params.remedies;

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "cluxel/error.hpp"
 #include "cluxel/progress.hpp"
 #include "scan/input_frame.hpp"
 #include "scan/scan.hpp"
@@ -29,6 +30,8 @@ struct ScanSetParams {
       poses;              ///< poses (KITTI 3x4, TUM, or 4x4 text) instead of those found beside the scans, or empty
   InputFrame frame = {};  ///< of all inputs: points, poses, map_origin
   InputRemedies remedies = {};
+  /// Scans with a fault are left out, and faulty() tells them. Otherwise the first fault refuses all.
+  bool leaves_out_faulty = false;
 };
 
 /// One scan that is known but not loaded.
@@ -40,6 +43,12 @@ struct ScanFile {
   Eigen::Isometry3d T_map_sensor = Eigen::Isometry3d::Identity();  ///< in metres, z up
   bool has_pose = false;
   InputFrame frame;  ///< of the points in the file
+};
+
+/// A file that should be a scan, and what is wrong with it.
+struct FaultyScan {
+  std::filesystem::path path;
+  InputError fault;
 };
 
 /// What a person should know about the reading of one scan.
@@ -64,8 +73,9 @@ struct PosedScan {
 class ScanSet {
  public:
   /// Finds the scans in files, folders and manifests, in the order given and by name inside a folder; reads poses and
-  /// the coordinate systems of LAS files, but no points. Throws InputError (what, file, line or byte). Notes go to
-  /// `sink`, for example on files without a pose.
+  /// the coordinate systems of LAS files, but no points. Throws InputError (what, file, line or byte), also with
+  /// ScanSetParams::leaves_out_faulty when a folder, manifest or poses file has a fault. Notes go to `sink`, for
+  /// example on files without a pose.
   static ScanSet open(const std::vector<std::filesystem::path>& inputs, const ScanSetParams& params,
                       ProgressSink& sink);
 
@@ -85,12 +95,15 @@ class ScanSet {
   const Eigen::Vector3d& mapOrigin() const { return map_origin_; }
   /// The coordinate reference system of the outer frame, from a manifest or LAS files ("EPSG:n" or WKT); may be empty.
   const std::string& crs() const { return crs_; }
+  /// Scans that were left out.
+  const std::vector<FaultyScan>& faulty() const { return faulty_; }
   const InputRemedies& remedies() const { return remedies_; }
 
  private:
   std::vector<ScanFile> files_;
   Eigen::Vector3d map_origin_ = Eigen::Vector3d::Zero();
   std::string crs_;
+  std::vector<FaultyScan> faulty_;
   InputRemedies remedies_;
 };
 
