@@ -191,6 +191,8 @@ ChangeReport movedIn(const fs::path& file, const std::vector<ScanPose>& poses, c
   try {
     for (std::size_t i = 0; i < moves.size(); ++i) {
       if (!transaction) transaction.emplace(editor.begin());
+      // Points that stay where they are change no tile, but what a sensor sees decides, too.
+      if (!moves[i].before.has_pose) editor.decideAnew();
       scan::Scan scan = storedScan(*transaction, moves[i].pose.scan);
       scan.T_map_sensor = moves[i].pose.T_map_sensor;
       scan.has_pose = true;

@@ -70,6 +70,9 @@ class MapEditor {
   /// commit as other inputs are set.
   void setInputs(ParsedInputs inputs);
 
+  /// The next commit decides about everything anew, because of what the outputs of tiles do not tell.
+  void decideAnew() { changed_inputs_ = ChangedInputs::Any; }
+
   /// Begins a write transaction, and erases in it what early commits of a killed command left.
   rdf::WriteTransaction begin();
   /// Begins anew after an early commit.
