@@ -1,68 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // A map that grows while scans arrive is the map that a build from all of them gives.
-#include "mapping/change/folder_watch.hpp"
+#include "mapping/watch/folder_watch.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <iomanip>
-#include <sstream>
-#include <thread>
-
-#include "base/file_bytes.hpp"
-#include "cluxel/error.hpp"
-#include "mapping/small_campus.hpp"
+#include "mapping/watch_fixture.hpp"
 
 namespace cluxel::mapping {
 namespace {
 
 namespace fs = std::filesystem;
-
-class Notes : public ProgressSink {
- public:
-  void note(std::string_view message) override { all.emplace_back(message); }
-  std::vector<std::string> all;
-};
-
-class FolderWatch : public ::testing::Test {
- protected:
-  static void SetUpTestSuite() {
-    campus = new SmallCampus({.seed = 8, .stops = 3, .size_m = 45, .points_per_stop = 1000});
-    inputs = new MapInputs(shippedInputs());
-  }
-  static void TearDownTestSuite() {
-    delete campus;
-    delete inputs;
-  }
-
-  FolderWatch() { fs::create_directory(scans()); }
-  fs::path scans() const { return folder.path() / "scans"; }
-  fs::path map() const { return folder.path() / "map.clx"; }
-
-  /// Writes the file in two steps, as a slow recorder does.
-  void arrive(std::size_t number) const {
-    const std::string bytes = readFile(campus->files()[number]);
-    const fs::path file = scans() / campus->files()[number].filename();
-    writeFile(file, bytes.substr(0, bytes.size() / 2));
-    std::this_thread::sleep_for(std::chrono::milliseconds(30));
-    writeFile(file, bytes);
-  }
-
-  /// Watches until `count` scans are in the map; `each` runs after each commit.
-  std::size_t watch(std::size_t count, const std::function<void(std::size_t)>& each) {
-    WatchCallbacks callbacks;
-    std::size_t in_map = 0;
-    callbacks.inputs = [] { return *inputs; };
-    callbacks.committed = [&](std::size_t, std::size_t total, std::size_t) { each(in_map = total); };
-    callbacks.is_stopped = [&] { return in_map >= count; };
-    return watchFolder(scans(), map(), {.threads = 1, .interval_s = 0.05, .idle_s = 120}, callbacks, notes);
-  }
-
-  rdf::ScratchFolder folder;
-  Notes notes;
-  static inline SmallCampus* campus = nullptr;
-  static inline MapInputs* inputs = nullptr;
-};
 
 TEST_F(FolderWatch, GrowsTheMapToTheOneOfAllScans) {
   arrive(0);
@@ -109,20 +54,6 @@ TEST_F(FolderWatch, GoesOnWithAFirstBuildThatWasInterrupted) {
   EXPECT_THAT(notes.all, ::testing::Contains(::testing::HasSubstr("broken.pcd")));
   EXPECT_THAT(totals, ::testing::ElementsAre(2, 3));
   EXPECT_TRUE(canonicalText(map()) == builtText(campus->files(), *inputs));
-}
-
-/// Writes poses of the first scans, the x of the first one shifted.
-void writePoses(const fs::path& file, const std::vector<fs::path>& scans, std::size_t count, double shift_m) {
-  std::ostringstream text;
-  text << std::setprecision(17);
-  for (std::size_t i = 0; i < count; ++i) {
-    Eigen::Matrix4d pose = scansOf({scans[i]}).file(0).T_map_sensor.matrix();
-    if (i == 0) pose(0, 3) += shift_m;
-    for (int row = 0; row < 4; ++row)
-      for (int column = 0; column < 4; ++column) text << pose(row, column) << ' ';
-    text << '\n';
-  }
-  writeFile(file, text.str());
 }
 
 TEST_F(FolderWatch, MovesScansWhosePosesAreCorrected) {

@@ -4,13 +4,13 @@
 #include "cluxel/error.hpp"
 #include "mapping/build/early_commit.hpp"
 #include "mapping/build/work_file.hpp"
-#include "mapping/change/folder_watch.hpp"
 #include "mapping/change/map_compaction.hpp"
 #include "mapping/change/map_update.hpp"
 #include "mapping/change/rdf_loading.hpp"
 #include "mapping/change/statement_change.hpp"
 #include "mapping/free_space.hpp"
 #include "mapping/killed_change.hpp"
+#include "mapping/watch/folder_watch.hpp"
 
 namespace cluxel::mapping {
 namespace {

@@ -5,8 +5,8 @@
 #include "app/stop_signals.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/build/work_file.hpp"
-#include "mapping/change/folder_watch.hpp"
 #include "mapping/map_state.hpp"
+#include "mapping/watch/folder_watch.hpp"
 
 namespace cluxel::app {
 
@@ -68,7 +68,7 @@ void addWatch(CLI::App& app, Session& session) {
   addScanOptions(*command, options->scans);
   command->add_option("--interval", options->params.interval_s, "time between two looks at the folder [s, 1]")
       ->check(within({.min = 0.05, .max = 3600}));
-  command->add_option("--idle", options->params.idle_s, "end when no scan has arrived for this time [s]; 0: never")
+  command->add_option("--idle", options->params.idle_s, "end when nothing has changed for this time [s]; 0: never")
       ->check(within({.min = 0, .max = 1e6}));
   command->add_option("--model", options->files.model,
                       "for a new map: a trained model, as a name in models/ or a file");

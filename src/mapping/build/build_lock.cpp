@@ -13,6 +13,7 @@
 
 #include "cluxel/error.hpp"
 #include "rdf/file/lock_file.hpp"
+#include "rdf/file/map_replacement.hpp"
 
 namespace cluxel::mapping {
 
@@ -68,7 +69,7 @@ BuildLock::BuildLock(const fs::path& map) : file_(buildLockOf(map)) {
     if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
       const std::string holder = holderOf(descriptor);
       ::close(descriptor);
-      refuse(map, holder + " is changing it; wait until that has ended");
+      throw rdf::MapBusy(map, holder + " is changing it; wait until that has ended");
     }
     if (isNamed(descriptor, file_)) {
       descriptor_ = descriptor;

@@ -11,7 +11,7 @@ namespace cluxel::mapping {
 /// Readers, `update` and `load` do not take it.
 class BuildLock {
  public:
-  /// Never waits: throws Error (StoreUnavailable), naming the process that holds the lock.
+  /// Never waits: throws rdf::MapBusy, naming the process that holds the lock, or Error (StoreUnavailable).
   explicit BuildLock(const std::filesystem::path& map);
   BuildLock(const BuildLock&) = delete;
   BuildLock& operator=(const BuildLock&) = delete;

@@ -178,6 +178,7 @@ class MapBuild {
     given_.add(given.scan.cloud);
     const std::uint64_t points = given.scan.cloud.point_count;
     const scan::ScanId id = given.scan.cloud.id;
+    report_.given.push_back(id);
     const std::optional<double> time_s = given.scan.cloud.time_s;
     const std::optional<Cloud> known = storedCloud(batch.transaction, id);
     auto segments = storeScan(batch.transaction, std::move(given.scan));

@@ -30,6 +30,7 @@ struct BuildReport {
   std::size_t scans = 0, tiles = 0, cluxels = 0, primitives = 0, objects = 0;
   std::uint64_t points = 0, quads = 0;
   std::size_t scans_already_there = 0;  ///< of the unfinished build that was continued, or given twice
+  std::vector<scan::ScanId> given;      ///< the scans that were given, in their order
 };
 
 /// Builds `file` from `scans`, under a BuildLock. Throws Error (InvalidArgument) for a finished map, or a store that no
@@ -37,8 +38,7 @@ struct BuildReport {
 /// those given. With `force` the new map is built in FILE.building and replaces the old one by a rename, so that there
 /// is always a complete map. The operator's statements cannot be recomputed: they are copied from the old map at the
 /// end, unless they are to be dropped. A scan that is given more than once counts once, with its latest time, and is
-/// noted. Throws InputError for faulty scans, rules, ontology or model; nothing is written
-/// then.
+/// noted. Throws InputError for faulty scans, rules, ontology or model; nothing is written then.
 BuildReport buildMap(const scan::ScanSet& scans, const MapInputs& inputs, const std::filesystem::path& file,
                      const BuildParams& params, ProgressSink& sink);
 

@@ -77,6 +77,7 @@ ChangeReport addBy(MapEditor& editor, const scan::ScanSet& scans) {
       const scan::LoadedScan loaded = scans.read(i);
       for (const std::string& note : notes.add(loaded.reading)) sink.note(note);
       additions.add(loaded.scan, scans.size() - i - 1);
+      editor.result().given.push_back(loaded.scan.id);
       sink.progress("scans", i + 1, scans.size());
     }
     additions.finish();

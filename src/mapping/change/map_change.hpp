@@ -21,8 +21,9 @@ namespace cluxel::mapping {
 void requireFrame(const MapInputs& map, const scan::ScanSet& scans);
 
 /// Adds scans, batch by batch. After each commit, readers see the exact map of the scans so far, so that a killed run
-/// continues when it is repeated. Scans that are there with the same pose are passed over. Throws InputError for a scan
-/// that is there with another pose, or whose manifest names another map origin or coordinate system than the map's.
+/// continues when it is repeated. Scans that are there with the same pose are passed over, but for later times (with
+/// ChangeParams::takes_given_times, also earlier ones). Throws InputError for a scan that is there with another pose,
+/// or whose manifest names another map origin or coordinate system than the map's.
 ChangeReport extendMap(const std::filesystem::path& file, const scan::ScanSet& scans, const ChangeParams& params,
                        ProgressSink& sink);
 

@@ -33,14 +33,17 @@ struct ChangeParams {
   bool may_compact = true;                    ///< rewrite the map when the change leaves much free space
   double max_window_share = UpdateParams{}.max_window_share;  ///< this and the next as in UpdateParams
   std::uint64_t whole_cluxels = UpdateParams{}.whole_cluxels;
+  bool takes_given_times = false;  ///< a known scan gets the latest time given for it, also an earlier one
 };
 
 struct ChangeReport {
   bool has_changes = false;  ///< something was committed, or would be without dry_run
   std::size_t scans_added = 0, scans_already_there = 0, scans_removed = 0, scans_moved = 0;
-  std::size_t tiles_touched = 0;  ///< a scan's points in them changed
-  std::size_t tiles_changed = 0;  ///< the output of some stage changed
-  std::size_t tiles_decided = 0;  ///< in which the rules ran again; summed over the commits
+  std::size_t scans_retimed = 0;    ///< known scans that got another time
+  std::vector<scan::ScanId> given;  ///< where scans are added: those that were given, in their order
+  std::size_t tiles_touched = 0;    ///< a scan's points in them changed
+  std::size_t tiles_changed = 0;    ///< the output of some stage changed
+  std::size_t tiles_decided = 0;    ///< in which the rules ran again; summed over the commits
   std::size_t scans = 0, tiles = 0, cluxels = 0, primitives = 0, object_count = 0;  ///< of the map afterwards
   /// The objects that differ; of a merge all objects of all maps, and all of the result.
   std::vector<ObjectMembers> before, after;

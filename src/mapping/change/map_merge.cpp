@@ -37,7 +37,7 @@ std::vector<std::string> textsOf(const std::vector<NamedText>& named, bool with_
   return texts;
 }
 
-std::vector<std::string> differencesOf(const MapInputs& a, const MapInputs& b) {
+std::vector<std::string> differencesBetween(const MapInputs& a, const MapInputs& b) {
   std::vector<std::string> differences;
   if (textsOf(a.ontology) != textsOf(b.ontology)) differences.emplace_back("ontology");
   if (textsOf(a.rules) != textsOf(b.rules) || a.rule_roots != b.rule_roots ||
@@ -122,7 +122,7 @@ class Merge {
                     maps_[i].file.string() + ": has another map origin or coordinate system than " +
                         maps_[0].file.string() + "; name the transform between the frames",
                     Remedy::NameTransform);
-      const auto differences = differencesOf(first, mine);
+      const auto differences = differencesBetween(first, mine);
       if (!differences.empty() && !params_.use)
         throw Error(ErrorKind::InvalidArgument,
                     maps_[i].file.string() + ": differs from " + maps_[0].file.string() +
@@ -288,7 +288,7 @@ class Merge {
     const bool is_large =
         points > params_.change.batch_points.value_or(kStagePoints) || points > readers_[base_].summary().points / 8;
     return is_large && isAlike(number) && own.map_origin == inputs.map_origin && own.crs == inputs.crs &&
-           differencesOf(own, inputs).empty() &&
+           differencesBetween(own, inputs).empty() &&
            canLendDecisions(additions.transaction(), readers_[number].transaction(), params_.change.max_window_share,
                             params_.max_border_tiles);
   }

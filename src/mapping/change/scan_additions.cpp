@@ -19,6 +19,7 @@ void ScanAdditions::add(const scan::Scan& scan, std::size_t scans_left) {
   if (!transaction_) transaction_.emplace(editor_.begin());
   const std::optional<Cloud> known = storedCloud(*transaction_, scan.id);
   auto segments = storeScan(*transaction_, scan);
+  noteGivenTime(scan);
   if (segments.empty()) {
     ++editor_.result().scans_already_there;
     countOtherTime(scan, known->time_s, storedCloud(*transaction_, scan.id)->time_s);
@@ -48,19 +49,41 @@ void ScanAdditions::countOtherTime(const scan::Scan& scan, std::optional<double>
   has_other_changes_ = has_other_changes_ || now_s != before_s;
   if (now_s != before_s)
     ++later_times_;
-  else if (scan.time_s && scan.time_s != toMicroseconds(before_s))
+  else if (!editor_.params().takes_given_times && scan.time_s && scan.time_s != toMicroseconds(before_s))
     ++earlier_times_;
 }
 
+void ScanAdditions::noteGivenTime(const scan::Scan& scan) {
+  if (!editor_.params().takes_given_times || !scan.time_s) return;
+  double& latest = given_times_.try_emplace(scan.id, *scan.time_s).first->second;
+  latest = std::max(latest, *scan.time_s);
+}
+
+/// Later ones are taken already.
+void ScanAdditions::takeEarlierTimes() {
+  for (const auto& [id, latest_s] : given_times_) {
+    const std::optional<Cloud> cloud = storedCloud(*transaction_, id);  // none while its points are committed early
+    if (!cloud || !cloud->time_s || *cloud->time_s <= latest_s) continue;
+    storeTime(*transaction_, *cloud, latest_s);
+    ++times_set_back_;
+    has_other_changes_ = true;
+  }
+}
+
 void ScanAdditions::noteOtherTimes() {
-  if (later_times_ > 0)
-    editor_.sink().note(std::to_string(later_times_) + " known scans have later times now, which are taken");
+  const auto noteTaken = [&](std::size_t count, const std::string& which) {
+    if (count > 0)
+      editor_.sink().note(std::to_string(count) + " known scans have " + which + " times now, which are taken");
+  };
+  noteTaken(later_times_, "later");
+  noteTaken(times_set_back_, "earlier");
+  editor_.result().scans_retimed += later_times_ + times_set_back_;
   if (earlier_times_ > 0)
     editor_.sink().note(
         std::to_string(earlier_times_) +
         " known scans are given earlier times; the later ones stay. To correct a time, retract the scan "
         "and add it again");
-  later_times_ = earlier_times_ = 0;
+  later_times_ = earlier_times_ = times_set_back_ = 0;
 }
 
 void ScanAdditions::noteAdded(const Cloud& cloud) {
@@ -102,6 +125,7 @@ void ScanAdditions::drop() {
 }
 
 void ScanAdditions::finish() {
+  if (transaction_) takeEarlierTimes();
   noteOtherTimes();
   noteAlone();
   if (!added_.empty() || has_other_changes_) editor_.commit(*transaction_, operation_, std::move(changes_), added_);

@@ -2,6 +2,7 @@
 // Adds scans to an opened map in batches; each becomes part of the map in one commit.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -38,6 +39,9 @@ class ScanAdditions {
   void noteAdded(const Cloud& cloud);
   /// A scan that is there may be given with another time.
   void countOtherTime(const scan::Scan& scan, std::optional<double> before_s, std::optional<double> now_s);
+  /// The latest of the times with which a scan was given becomes that of the map, with takes_given_times.
+  void noteGivenTime(const scan::Scan& scan);
+  void takeEarlierTimes();
   void noteOtherTimes();
 
   MapEditor& editor_;
@@ -49,6 +53,8 @@ class ScanAdditions {
   std::uint64_t points_ = 0;                         ///< of the batch
   std::uint64_t points_to_commit_ = 0;               ///< of scans that are stored, since the last commit
   std::size_t later_times_ = 0, earlier_times_ = 0;  ///< of known scans in the batch
+  std::size_t times_set_back_ = 0;                   ///< of known scans in the batch: earlier times that were taken
+  std::map<scan::ScanId, double> given_times_;       ///< the latest of each scan, with ChangeParams::takes_given_times
   bool has_other_changes_ = false;
 };
 

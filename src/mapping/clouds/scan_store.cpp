@@ -101,9 +101,8 @@ Cloud cloudOf(const scan::Scan& scan) {
 
 /// The later one does not depend on the order of the scans. An absent time compares as earlier.
 void keepLaterTime(rdf::WriteTransaction& transaction, Cloud there, std::optional<double> time_s) {
-  if (time_s <= toMicroseconds(there.time_s)) return;  // maps of earlier versions hold finer times
-  there.time_s = time_s;
-  transaction.putBlock(tables::kScans, tables::keyOf(there.id), toBytes(there));
+  // Maps of earlier versions hold finer times.
+  if (time_s > toMicroseconds(there.time_s)) storeTime(transaction, std::move(there), *time_s);
 }
 
 /// Poses that are closer differ because numbers were written or computed in another way.
@@ -243,6 +242,11 @@ ScanSegments storeScan(rdf::WriteTransaction& transaction, PreparedScan scan) {
   transaction.putBlock(tables::kScanPoints, key, scan.packed_points);
   transaction.putBlock(tables::kScans, key, toBytes(scan.cloud));
   return std::move(scan.segments);
+}
+
+void storeTime(rdf::WriteTransaction& transaction, Cloud cloud, double time_s) {
+  cloud.time_s = time_s;
+  transaction.putBlock(tables::kScans, tables::keyOf(cloud.id), toBytes(cloud));
 }
 
 bool copyScan(rdf::WriteTransaction& transaction, const rdf::ReadTransaction& other, const Cloud& cloud) {

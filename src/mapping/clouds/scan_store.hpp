@@ -63,6 +63,9 @@ PreparedScan prepareScan(const scan::Scan& scan);
 ScanSegments storeScan(rdf::WriteTransaction& transaction, const scan::Scan& scan);
 ScanSegments storeScan(rdf::WriteTransaction& transaction, PreparedScan scan);
 
+/// Gives a stored scan another time.
+void storeTime(rdf::WriteTransaction& transaction, Cloud cloud, double time_s);
+
 /// Copies a scan of another map as it is stored there. False, and the later of both times, when the scan is here.
 /// Errors as for storeScan().
 bool copyScan(rdf::WriteTransaction& transaction, const rdf::ReadTransaction& other, const Cloud& cloud);

@@ -48,9 +48,10 @@ class HeldName {
 }  // namespace
 
 MapBusy::MapBusy(const fs::path& map)
-    : Error(ErrorKind::StoreUnavailable,
-            map.string() +
-                ": another process is writing to the map or copying it; wait until it has ended and run again") {}
+    : MapBusy(map, "another process is writing to the map or copying it; wait until it has ended and run again") {}
+
+MapBusy::MapBusy(const fs::path& map, const std::string& what)
+    : Error(ErrorKind::StoreUnavailable, map.string() + ": " + what) {}
 
 MapReplaced::MapReplaced(const fs::path& map)
     : Error(ErrorKind::StoreUnavailable, map.string() +

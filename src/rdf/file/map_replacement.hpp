@@ -4,16 +4,18 @@
 
 #include <chrono>
 #include <filesystem>
+#include <string>
 
 #include "cluxel/error.hpp"
 #include "rdf/file/environment.hpp"
 
 namespace cluxel::rdf {
 
-/// Another process is writing to the map, or copying it.
+/// Another process is changing the map, or copying it.
 class MapBusy : public Error {
  public:
   explicit MapBusy(const std::filesystem::path& map);
+  MapBusy(const std::filesystem::path& map, const std::string& what);
 };
 
 /// The file was replaced or removed since it was opened; writes to it would be lost.
