@@ -40,6 +40,13 @@ TEST_F(Updates, WriteTheOperatorGraphWhenNoneIsNamed) {
   EXPECT_THAT(in(vocabulary::kGraphOperator), IsEmpty());
 }
 
+/// A relative IRI in a map is written as RDF that no reader takes.
+TEST_F(Updates, WriteNoRelativeIris) {
+  EXPECT_EQ(change("INSERT { :a :see ?i } WHERE { BIND(IRI(\"rel\") AS ?i) }").inserted, 0U);
+  EXPECT_EQ(change("BASE <http://b/c> INSERT { :a :see ?i } WHERE { BIND(IRI(\"rel\") AS ?i) }").inserted, 1U);
+  EXPECT_THAT(in(vocabulary::kGraphOperator), ElementsAre(":a :see <http://b/rel>"));
+}
+
 TEST_F(Updates, OfOtherGraphsAreRefusedWithTheListOfOpenOnes) {
   try {
     change("INSERT DATA { GRAPH <https://w3id.org/cluxel/graph/observed> { :a :p 7 } }");

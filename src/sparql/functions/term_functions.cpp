@@ -82,7 +82,8 @@ Value iriFunction(Arguments arguments, FunctionContext& context) {
   if (value.type != Type::String) return {};
   const std::string text = context.terms.textOf(value);
   if (!rdf::hasIriCharactersOnly(text)) return {};
-  return Value::iri(context.base_iri.empty() ? text : resolveIri(text, context.base_iri));
+  if (!context.base_iri.empty()) return Value::iri(resolveIri(text, context.base_iri));
+  return isAbsoluteIri(text) ? Value::iri(resolveIri(text, {})) : Value{};  // no RDF file could name a relative IRI
 }
 
 Value bnodeFunction(Arguments arguments, FunctionContext& context) {
