@@ -91,6 +91,31 @@ TEST(RuleFitting, IsNotSureOfAFewThatWereAllRight) {
   EXPECT_NEAR(fitted[0].changes[0].after, 28.0 / 29.0, 0.02);
 }
 
+TEST(RuleFitting, KeepsNumbersThatAreBetterOnPlacesLeftOut) {
+  rules::RuleSet sure = ruleSet();
+  std::get<rules::AcceptLeaf>(sure.rules[0].nodes[1].what).confidence.high = 0.999;
+  std::vector<CandidateExample> all_right = examples(27);
+  for (CandidateExample& example : all_right) {
+    example.is_right = true;
+    example.confidence = rules::logOdds(0.999);
+  }
+  const auto fitted = fitEvidence(sure, all_right, {});
+  ASSERT_EQ(fitted.size(), 1U);
+  EXPECT_GT(fitted[0].loss_after, fitted[0].loss_before);
+  EXPECT_THAT(fitted[0].refusal, ::testing::HasSubstr("worse on places left out: log loss 0.001 -> "));
+  EXPECT_FALSE(fitted[0].is_fitted);
+  EXPECT_TRUE(fitted[0].changes.empty());
+}
+
+TEST(RuleFitting, ChangesNothingWhereNoPlaceCanBeLeftOut) {
+  std::vector<CandidateExample> one_scan = examples(400);
+  for (CandidateExample& example : one_scan) example.place = "the only scan";
+  const auto fitted = fitEvidence(ruleSet(), one_scan, {});
+  ASSERT_EQ(fitted.size(), 1U);
+  EXPECT_THAT(fitted[0].refusal, ::testing::HasSubstr("of one scan"));
+  EXPECT_TRUE(fitted[0].changes.empty());
+}
+
 TEST(RuleFitting, GivesTheSameNumbersTwice) {
   const auto a = fitEvidence(ruleSet(), examples(300), {}), b = fitEvidence(ruleSet(), examples(300), {});
   ASSERT_EQ(a[0].changes.size(), b[0].changes.size());

@@ -82,7 +82,7 @@ void printFit(const std::vector<tasks::FittedRule>& fitted, Session& session) {
     Json entry{{"rule", rule.rule_id}, {"right", rule.right}, {"wrong", rule.wrong}, {"changes", Json::array()}};
     if (!rule.refusal.empty()) entry["refusal"] = rule.refusal;
     if (rule.kept > 0) entry["kept"] = rule.kept;
-    if (rule.is_fitted) entry["loss_before"] = rule.loss_before, entry["loss_after"] = rule.loss_after;
+    if (rule.loss_after > 0) entry["loss_before"] = rule.loss_before, entry["loss_after"] = rule.loss_after;
     for (const tasks::FittedNumber& number : rule.changes)
       entry["changes"].push_back({{"line", number.at.line},
                                   {"what", number.what},

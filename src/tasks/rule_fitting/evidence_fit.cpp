@@ -3,7 +3,9 @@
 #include "tasks/rule_fitting/evidence_fit.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <map>
 #include <random>
 #include <set>
@@ -39,6 +41,12 @@ double logOddsAt(const Sample& sample, std::span<const double> x) {
 double lossOf(const Sample& sample, double log_odds) {
   const double signed_odds = sample.is_right ? log_odds : -log_odds;
   return signed_odds > 30 ? 0 : std::log1p(std::exp(-signed_odds));
+}
+
+std::string lossText(double loss) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.3f", loss);
+  return text.data();
 }
 
 /// Logistic regression with a ridge; `weights` says how often each sample counts.
@@ -88,8 +96,17 @@ class RuleFit {
       keepShiftOnly();
       addSuccession();
     }
-    resample();
+    if (places_.size() < 2) {
+      fitted.refusal = "all its candidates are of one scan, and none is left to test new numbers on";
+      return fitted;
+    }
     scoreLeftOut(fitted);
+    if (fitted.loss_after > fitted.loss_before) {
+      fitted.refusal = "new numbers are worse on places left out: log loss " + lossText(fitted.loss_before) + " -> " +
+                       lossText(fitted.loss_after);
+      return fitted;
+    }
+    resample();
     fitted.is_fitted = true;
     fitted.kept = design_.keptPlaces().size();
     addConfidences(fitted);
@@ -108,8 +125,8 @@ class RuleFit {
     only_shift_ = true;
   }
 
-  /// Laplace's rule of succession: one more right candidate and one more wrong one. Of 27 that were all right follows a
-  /// confidence of 28 in 29, not of 1.
+  /// As Laplace's rule of succession, adds a right candidate and a wrong one: a few that were all right must not give a
+  /// confidence of 1. Where the evidence adds nothing, 27 right ones give about 28 in 29.
   void addSuccession() {
     const bool may_shift = std::any_of(samples_.begin(), samples_.end(), [](const Sample& sample) {
       return !sample.row.empty() && sample.row.front().first == 0;
@@ -143,9 +160,10 @@ class RuleFit {
     return weights;
   }
 
-  /// Every fifth place in turn is left out.
+  /// A fifth of the places in turn is left out.
   void scoreLeftOut(FittedRule& fitted) const {
     constexpr std::size_t kFolds = 5;
+    const auto candidates = static_cast<double>(fitted.right + fitted.wrong);
     for (std::size_t fold = 0; fold < kFolds; ++fold) {
       std::map<std::string, double> kept;
       for (std::size_t i = 0; i < places_.size(); ++i)
@@ -155,9 +173,8 @@ class RuleFit {
       const auto before = startingPoint();
       for (std::size_t s = 0; s < samples_.size(); ++s) {
         if (weights[s] != 0) continue;
-        fitted.loss_after += lossOf(samples_[s], logOddsAt(samples_[s], x)) / static_cast<double>(samples_.size());
-        fitted.loss_before +=
-            lossOf(samples_[s], logOddsAt(samples_[s], before)) / static_cast<double>(samples_.size());
+        fitted.loss_after += lossOf(samples_[s], logOddsAt(samples_[s], x)) / candidates;
+        fitted.loss_before += lossOf(samples_[s], logOddsAt(samples_[s], before)) / candidates;
       }
     }
   }

@@ -33,16 +33,17 @@ struct FittedRule {
   std::string refusal;     ///< why nothing was learned; else empty
   bool is_fitted = false;  ///< some numbers were estimated
   std::size_t kept = 0;    ///< numbers left as they are, because definitions share them with other rules
-  double loss_before = 0, loss_after = 0;  ///< mean log loss on places left out of the fit, in turn
+  double loss_before = 0, loss_after = 0;  ///< mean log loss on places left out of the fit, in turn; 0 if not tested
   std::vector<FittedNumber> changes;
 };
 
 /// When the truth of some map names a class, maps whose truth does not are left out for that class: what they call a
 /// small object may be a person. A rule stays as it is when it has fewer than `min_examples` candidates, or its class
-/// has fewer right ones. When the rule has fewer right or wrong candidates, only its confidence is fitted.
-/// Leaves of a rule that use one definition are fitted together. A number of a definition that several rules use is
-/// kept as it is, because the best value for one rule may be wrong for another. One entry for each rule that proposed a
-/// candidate, in the order of the rule set. Deterministic for a seed.
+/// has fewer right ones, or when the new numbers have a greater loss on places left out, or when there is only one
+/// place. When the rule has fewer right or wrong candidates, only its confidence is fitted. Leaves of a rule that use
+/// one definition are fitted together. A number of a definition that several rules use is kept as it is, because the
+/// best value for one rule may be wrong for another. One entry for each rule that proposed a candidate, in the order of
+/// the rule set. Deterministic for a seed.
 std::vector<FittedRule> fitEvidence(const rules::RuleSet& rules, const std::vector<CandidateExample>& examples,
                                     const EvidenceFitParams& params);
 
