@@ -9,8 +9,8 @@ import numpy.typing as npt
 
 _Path = Union[str, os.PathLike[str]]
 _Paths = Union[_Path, Sequence[_Path]]
-_Value = Union[Term, str, bool, int, float]
-_Column = Any  # an int64 or float64 array, or a list of str and None: it depends on the cells
+_Value = Union[Term, str, bool, int, float, np.generic]
+_Column = Any  # an array of int64, float64 or int and None, or a list of str and None: it depends on the cells
 
 __version__: str
 LABELS: tuple[str, ...]
@@ -213,7 +213,14 @@ class Map:
         source_name: str = "query",
         strict_default_graph: bool = False,
     ) -> Answer: ...
-    def update(self, text: str) -> UpdateCounts: ...
+    def update(
+        self,
+        text: str,
+        *,
+        deadline_s: Optional[float] = None,
+        max_memory_bytes: int = ...,
+        source_name: str = "update",
+    ) -> UpdateCounts: ...
     def extend(
         self,
         scans: _Paths,

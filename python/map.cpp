@@ -76,11 +76,17 @@ Answer query(const Map& map, const std::string& text, const py::dict& bindings, 
   return map.query(text, options);
 }
 
-py::tuple update(Map& map, const std::string& text) {
+py::tuple update(Map& map, const std::string& text, std::optional<double> deadline_s, std::uint64_t max_memory_bytes,
+                 const std::string& source_name) {
+  UpdateOptions options;
+  options.deadline = deadlineOf(deadline_s);
+  options.max_memory_bytes = max_memory_bytes;
+  options.source_name = source_name;
+  options.poll = SignalPoll();
   UpdateCounts counts;
   {
     const py::gil_scoped_release release;
-    counts = map.update(text);
+    counts = map.update(text, options);
   }
   return py::module_::import("cluxel").attr("UpdateCounts")(counts.inserted, counts.deleted);
 }
@@ -200,9 +206,10 @@ void bindMaps(py::module_& module) {
            py::arg("deadline_s") = py::none(), py::arg("max_rows") = 0U,
            py::arg("max_memory_bytes") = QueryOptions().max_memory_bytes, py::arg("source_name") = "query",
            py::arg("strict_default_graph") = false, kQueryDoc)
-      .def("update", &update, py::arg("text"),
+      .def("update", &update, py::arg("text"), py::kw_only(), py::arg("deadline_s") = py::none(),
+           py::arg("max_memory_bytes") = UpdateOptions().max_memory_bytes, py::arg("source_name") = "update",
            "Runs a SPARQL 1.1 Update on the operator's statements and infers what follows, all of it or nothing.\n"
-           "Gives UpdateCounts. LOAD is refused.")
+           "Gives UpdateCounts. LOAD is refused. deadline_s, max_memory_bytes and source_name are as for query().")
       .def("objects", &objectsOf, py::arg("class_name") = py::none(), Release(),
            "The objects that the rules found, sorted by IRI: all, or those of a class and its subclasses, named "
            "'Tree',\n"

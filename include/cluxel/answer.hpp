@@ -20,13 +20,12 @@ namespace cluxel {
 enum class AnswerKind : std::uint8_t { Solutions, Boolean, Triples };
 
 /// An immutable answer. Copies share their data and are cheap. Any number of threads may read one. It stays valid when
-/// the map changes or is closed.
+/// the map changes or is closed. An answer that was moved from may only be destroyed or assigned to.
 class CLUXEL_API Answer {
  public:
   class Row;
   class Iterator;
-  struct Data;
-  explicit Answer(std::shared_ptr<const Data> data) : data_(std::move(data)) {}
+  struct Data;  ///< of the library
 
   AnswerKind kind() const;
 
@@ -54,6 +53,8 @@ class CLUXEL_API Answer {
   const std::vector<Diagnostic>& warnings() const;
 
  private:
+  explicit Answer(std::shared_ptr<const Data> data) : data_(std::move(data)) {}
+
   std::shared_ptr<const Data> data_;
 };
 
@@ -76,7 +77,8 @@ class CLUXEL_API Answer::Row {
   std::size_t row_;
 };
 
-/// Runs over the solutions of an answer.
+/// Runs over the solutions of an answer, while the answer lives: a std::input_iterator. One made without an answer may
+/// only be assigned to, compared or destroyed.
 class CLUXEL_API Answer::Iterator {
  public:
   using iterator_category = std::input_iterator_tag;
@@ -85,6 +87,7 @@ class CLUXEL_API Answer::Iterator {
   using pointer = void;
   using reference = Row;
 
+  Iterator() = default;
   Iterator(const Answer& answer, std::size_t row) : answer_(&answer), row_(row) {}
   Row operator*() const { return {*answer_, row_}; }
   Iterator& operator++() {
@@ -99,8 +102,8 @@ class CLUXEL_API Answer::Iterator {
   bool operator==(const Iterator&) const = default;
 
  private:
-  const Answer* answer_;
-  std::size_t row_;
+  const Answer* answer_ = nullptr;
+  std::size_t row_ = 0;
 };
 
 inline Answer::Row Answer::operator[](std::size_t row) const {

@@ -13,11 +13,11 @@
 namespace cluxel {
 
 struct ChangeOptions {
-  std::filesystem::path poses;  ///< poses of added scans, as in BuildOptions
-  unsigned threads = 0;         ///< 0: one per processor; the map does not depend on it
+  std::filesystem::path poses = {};  ///< poses of added scans, as in BuildOptions
+  unsigned threads = 0;              ///< 0: one per processor; the map does not depend on it
   /// A batch of scans is committed when it has this many points, at least 1. Absent: 70 million where scans are added,
   /// 6 million where they move or maps are merged.
-  std::optional<std::uint64_t> batch_points;
+  std::optional<std::uint64_t> batch_points = {};
   bool dry_run = false;  ///< compute what would change, and write nothing
 };
 

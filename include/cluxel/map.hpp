@@ -40,17 +40,26 @@ struct BuildOptions {
   bool refine_poses = false;                ///< register the scans with each other first
 };
 
-/// Limits and parameters of a query; 0 means no limit.
+/// Limits and parameters of a query; 0 means no limit. A negative deadline is refused.
 struct QueryOptions {
-  std::chrono::milliseconds deadline{0};              ///< for the run of the query
-  std::uint64_t max_rows = 0;                         ///< of the answer
-  std::uint64_t max_memory_bytes = 4ULL << 30U;       ///< held by joins, sorts, groups and the answer
-  std::map<std::string, Term, std::less<>> bindings;  ///< values of variables, named without "?"
-  std::string source_name = "query";                  ///< names the query in errors and warnings
+  std::chrono::milliseconds deadline{0};                   ///< for the run of the query
+  std::uint64_t max_rows = 0;                              ///< of the answer
+  std::uint64_t max_memory_bytes = 4ULL << 30U;            ///< held by joins, sorts, groups and the answer
+  std::map<std::string, Term, std::less<>> bindings = {};  ///< values of variables, named without "?"
+  std::string source_name = "query";                       ///< names the query in errors and warnings
   /// The default graph is the union of all graphs but history; true: the unnamed graph only.
   bool strict_default_graph = false;
   /// Called now and then while the query runs, in its thread. What it throws ends the query and reaches the caller.
-  std::function<void()> poll;
+  std::function<void()> poll = {};
+};
+
+/// Limits of an update; 0 means no limit. A negative deadline is refused. An update that exceeds one changes nothing.
+struct UpdateOptions {
+  std::chrono::milliseconds deadline{0};         ///< for the update and what is inferred from it
+  std::uint64_t max_memory_bytes = 4ULL << 30U;  ///< held by the patterns of the update; as much by the inference
+  std::string source_name = "update";            ///< names the update in errors
+  /// As QueryOptions::poll. What it throws ends the update, which then changes nothing.
+  std::function<void()> poll = {};
 };
 
 /// How many quads an update inserted and deleted.
@@ -75,13 +84,21 @@ struct MapSummary {
 
 /// An open map file.
 ///
-/// Thread-safe: any number of threads may call the const functions at once. query() and objects() run in parallel;
-/// points() and explain() wait for each other. Each call reads one consistent state, the newest at its begin, also when
-/// another process writes. points() and explain() keep what they read until the map changes: about 1 KB a cluxel.
+/// Thread-safe: any number of threads may call its functions at once. Each call reads one consistent state, the newest
+/// commit at its begin, also when another thread or process writes. The const functions never wait for one that writes.
+/// query() and objects() run in parallel; summary(), clouds(), points() and explain() wait for each other. points() and
+/// explain() keep what they read until the map changes: about 1 KB a cluxel. Functions that write wait for each other.
+///
+/// Callbacks (ProgressSink and `poll`) may call all const functions, also of the map that is being written: they see
+/// the last commit. A function that writes a map throws Error (InvalidArgument) in a callback of one that writes the
+/// same map, because each would wait for the other.
 ///
 /// All functions throw Error. StoreUnavailable: the file is not a map, or cannot be read or written; FaultyInput (as
 /// InputError with file, line and column): scans, rules, ontology, model, query or update; NotFound: no such name;
-/// InvalidArgument: options that contradict each other; BudgetExceeded: a limit of QueryOptions.
+/// InvalidArgument: an empty path, or options that are wrong or contradict each other; BudgetExceeded: a limit of
+/// QueryOptions or UpdateOptions. What a callback throws passes unchanged.
+///
+/// A map that was moved from may only be destroyed or assigned to.
 class CLUXEL_API Map {
  public:
   /// Builds `file` from scan files, folders and manifests, and opens it. An unfinished build of the same inputs goes
@@ -109,7 +126,7 @@ class CLUXEL_API Map {
   Answer query(std::string_view text, const QueryOptions& options = {}) const;
   /// Runs a SPARQL 1.1 Update on the operator's statements (graph …/graph/operator) and infers what follows, all of it
   /// or nothing. LOAD is refused. Other readers see the state before until it is committed.
-  UpdateCounts update(std::string_view text);
+  UpdateCounts update(std::string_view text, const UpdateOptions& options = {});
 
   /// Adds scans (files, folders, manifests) to the map: it is then the map that build() makes from all scans. Scans
   /// that are there with the same pose are passed over. Each batch is one commit; progress and notes go to `sink`.

@@ -2,6 +2,8 @@
 // What copies of an answer share.
 #pragma once
 
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include "cluxel/answer.hpp"
@@ -12,6 +14,8 @@ namespace cluxel {
 struct Answer::Data {
   sparql::QueryResult result;
   std::vector<Diagnostic> warnings;
+
+  static Answer answer(Data data) { return Answer(std::make_shared<const Data>(std::move(data))); }
 };
 
 }  // namespace cluxel

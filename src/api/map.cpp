@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <mutex>
+#include <optional>
 #include <thread>
 
 #include "api/answer_data.hpp"
 #include "api/change_values.hpp"
+#include "api/guarded_call.hpp"
 #include "api/object_query.hpp"
 #include "api/point_query.hpp"
 #include "base/installation/data_home.hpp"
@@ -30,14 +32,60 @@ std::string_view version() {
 struct Map::Impl {
   explicit Impl(const std::filesystem::path& map_file) : file(map_file), map(map_file) {}
 
-  /// The newest state. `mutex` is held.
-  const mapping::MapReader& newest() { return map.reader(); }
-  rdf::QuadReader newestQuads() const { return map.quads(); }
+  /// What `read` gives for the newest state. Other readers wait, writers do not.
+  template <typename Read>
+  auto reading(const Read& read) {
+    return guarded([&] {
+      const std::lock_guard lock(reading_mutex);
+      return read(map.reader());
+    });
+  }
+  rdf::QuadReader newestQuads() const {
+    return guarded([&] { return map.quads(); });
+  }
+  /// Runs `write` when no other thread writes through this object; `write` takes the sink of its callbacks.
+  template <typename Write>
+  auto writing(ProgressSink& caller, const Write& write) {
+    WritingCall call(file, caller);
+    return guarded(
+        [&] {
+          const std::lock_guard lock(writing_mutex);
+          forget();  // the pages that it keeps can be used again once there is a newer commit
+          return write(call);
+        },
+        &call);
+  }
+  void forget() {
+    const std::lock_guard lock(reading_mutex);
+    map.release();
+  }
 
   const std::filesystem::path file;
-  std::mutex mutex;
+  std::mutex writing_mutex;  ///< taken before the other; held while callbacks run
+  std::mutex reading_mutex;  ///< guards `map`; not held while callbacks run
   mapping::NewestMap map;
 };
+
+namespace {
+
+void buildFile(const std::vector<std::filesystem::path>& scans, const std::filesystem::path& file,
+               const BuildOptions& options, ProgressSink& sink) {
+  const scan::ScanSet set = scan::ScanSet::open(scans, {options.poses}, sink);
+  const mapping::MapInputs inputs = mapping::readMapInputs({.ontology = options.ontology,
+                                                            .rules = options.rules,
+                                                            .sparql_rules = options.sparql_rules,
+                                                            .model = options.model},
+                                                           DataHome::find(options.home));
+  mapping::BuildParams params;
+  params.threads = options.threads > 0 ? options.threads : std::max(1U, std::thread::hardware_concurrency());
+  params.batch_points = options.batch_points;
+  params.force = options.force;
+  params.refine_poses = options.refine_poses;
+  params.drop_statements = options.drop_statements;
+  mapping::buildMap(set, inputs, file, params, sink);
+}
+
+}  // namespace
 
 Map::Map(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Map::Map(Map&&) noexcept = default;
@@ -55,31 +103,25 @@ Map Map::build(const std::vector<std::filesystem::path>& scans, const std::files
   if (options.batch_points == 0) throw Error(ErrorKind::InvalidArgument, "batch_points: write a number above 0, not 0");
   if (options.drop_statements && !options.force)
     throw Error(ErrorKind::InvalidArgument, "drop_statements goes with force only");
-  const scan::ScanSet set = scan::ScanSet::open(scans, {options.poses}, sink);
-  const mapping::MapInputs inputs = mapping::readMapInputs({.ontology = options.ontology,
-                                                            .rules = options.rules,
-                                                            .sparql_rules = options.sparql_rules,
-                                                            .model = options.model},
-                                                           DataHome::find(options.home));
-  mapping::BuildParams params;
-  params.threads = options.threads > 0 ? options.threads : std::max(1U, std::thread::hardware_concurrency());
-  params.batch_points = options.batch_points;
-  params.force = options.force;
-  params.refine_poses = options.refine_poses;
-  params.drop_statements = options.drop_statements;
-  mapping::buildMap(set, inputs, file, params, sink);
+  requirePath(file, "the map to be built");
+  WritingCall call(file, sink);
+  guarded([&] { buildFile(scans, file, options, call); }, &call);
   return open(file);
 }
 
 Map Map::open(const std::filesystem::path& file) {
-  auto impl = std::make_unique<Impl>(std::filesystem::absolute(file));
-  impl->newest();
-  return Map(std::move(impl));
+  requirePath(file, "the map to be opened");
+  return guarded([&] {
+    auto impl = std::make_unique<Impl>(std::filesystem::absolute(file));
+    impl->reading([](const mapping::MapReader&) {});
+    return Map(std::move(impl));
+  });
 }
 
 Map Map::open(const std::filesystem::path& file, ProgressSink& sink) {
   Map map = open(file);
-  if (!map.impl_->newest().isFinished())
+  const bool is_finished = map.impl_->reading([](const mapping::MapReader& reader) { return reader.isFinished(); });
+  if (!is_finished)
     sink.note(file.string() +
               ": warning: the build of this map is unfinished, so the answers are those of some of its "
               "scans; build it again with the same scans to finish it");
@@ -91,8 +133,7 @@ const std::filesystem::path& Map::file() const {
 }
 
 MapSummary Map::summary() const {
-  const std::lock_guard lock(impl_->mutex);
-  const mapping::MapSummary stored = impl_->newest().summary();
+  const mapping::MapSummary stored = impl_->reading([](const mapping::MapReader& map) { return map.summary(); });
   MapSummary summary;
   summary.is_finished = stored.is_finished;
   summary.inputs_hash = stored.inputs_hash;
@@ -105,6 +146,15 @@ MapSummary Map::summary() const {
 }
 
 namespace {
+
+/// Absent for 0. Throws Error (InvalidArgument) for a negative time.
+std::optional<std::chrono::milliseconds> deadlineOf(std::chrono::milliseconds deadline) {
+  if (deadline.count() < 0)
+    throw Error(ErrorKind::InvalidArgument,
+                "deadline: write a time above 0, or 0 for no limit, not " + std::to_string(deadline.count()) + " ms");
+  if (deadline.count() == 0) return std::nullopt;
+  return deadline;
+}
 
 /// Throws Error (InvalidArgument) for a variable that the query does not have.
 std::vector<std::string> boundVariables(const std::vector<sparql::Binding>& bindings, std::string_view text,
@@ -134,68 +184,80 @@ Answer Map::query(std::string_view text, const QueryOptions& options) const {
   if (options.strict_default_graph) engine.default_graph = sparql::DefaultGraph::Unnamed;
   engine.source_name = options.source_name;
   engine.prefixes = sparql::mapPrefixes();
-  if (options.deadline.count() > 0) engine.budget.deadline = options.deadline;
+  engine.budget.deadline = deadlineOf(options.deadline);
   engine.budget.max_rows = options.max_rows;
   engine.budget.max_memory_bytes = options.max_memory_bytes;
   engine.budget.poll = options.poll;
   const std::vector<sparql::Binding> bindings(options.bindings.begin(), options.bindings.end());
   const std::vector<std::string> names = boundVariables(bindings, text, engine);
-  auto data = std::make_shared<Answer::Data>();
+  Answer::Data data;
   sparql::PreparedQuery prepared(reader, text, engine, names);
-  data->result = prepared.evaluate(bindings);
-  data->warnings = prepared.warnings();
-  for (Diagnostic& note : prepared.notes()) data->warnings.push_back(std::move(note));
-  return Answer(std::move(data));
+  data.result = prepared.evaluate(bindings);
+  data.warnings = prepared.warnings();
+  for (Diagnostic& note : prepared.notes()) data.warnings.push_back(std::move(note));
+  return Answer::Data::answer(std::move(data));
 }
 
-UpdateCounts Map::update(std::string_view text) {
-  const std::lock_guard lock(impl_->mutex);
-  impl_->map.release();  // its pages can be used again once the update is committed
+UpdateCounts Map::update(std::string_view text, const UpdateOptions& options) {
+  sparql::QueryBudget budget;
+  budget.deadline = deadlineOf(options.deadline);
+  budget.max_memory_bytes = options.max_memory_bytes;
   ProgressSink silence;
-  const sparql::UpdateReport report = mapping::updateMap(
-      impl_->file, std::string(text), {.query = {.prefixes = sparql::mapPrefixes(), .source_name = "update"}}, silence);
-  return {report.inserted, report.deleted};
+  return impl_->writing(silence, [&](WritingCall& sink) -> UpdateCounts {
+    if (options.poll) budget.poll = [&] { sink.poll(options.poll); };
+    const sparql::UpdateReport report = mapping::updateMap(
+        impl_->file, std::string(text),
+        {.query = {.budget = budget, .prefixes = sparql::mapPrefixes(), .source_name = options.source_name}}, sink);
+    return {report.inserted, report.deleted};
+  });
 }
 
 MapChanges Map::extend(const std::vector<std::filesystem::path>& scans, const ChangeOptions& options,
                        ProgressSink& sink) {
-  const scan::ScanSet set = scan::ScanSet::open(scans, {options.poses}, sink);
-  const std::lock_guard lock(impl_->mutex);
-  impl_->map.release();
-  return changesOf(mapping::extendMap(impl_->file, set, changeParams(options), sink));
+  return impl_->writing(sink, [&](ProgressSink& callbacks) {
+    const scan::ScanSet set = scan::ScanSet::open(scans, {options.poses}, callbacks);
+    return changesOf(mapping::extendMap(impl_->file, set, changeParams(options), callbacks));
+  });
 }
 
 MapChanges Map::retract(const std::vector<std::string>& clouds, const ChangeOptions& options, ProgressSink& sink) {
-  const std::lock_guard lock(impl_->mutex);
-  impl_->map.release();
-  const auto ids = mapping::cloudsNamed(impl_->file, clouds, mapping::IncludeRetracted::Yes);
-  return changesOf(mapping::retractScans(impl_->file, ids, changeParams(options), sink));
+  return impl_->writing(sink, [&](ProgressSink& callbacks) {
+    const auto ids = mapping::cloudsNamed(impl_->file, clouds, mapping::IncludeRetracted::Yes);
+    return changesOf(mapping::retractScans(impl_->file, ids, changeParams(options), callbacks));
+  });
 }
 
 MapChanges Map::repose(const std::vector<CloudPose>& poses, const ChangeOptions& options, ProgressSink& sink) {
   std::vector<std::string> names;
   for (const CloudPose& pose : poses) names.push_back(pose.cloud);
-  const std::lock_guard lock(impl_->mutex);
-  impl_->map.release();
-  const auto ids = mapping::cloudsNamed(impl_->file, names);
-  std::vector<mapping::ScanPose> moves;
-  for (std::size_t i = 0; i < ids.size(); ++i) moves.push_back({ids[i], poseOf(poses[i])});
-  return changesOf(mapping::moveScans(impl_->file, moves, changeParams(options), sink));
+  return impl_->writing(sink, [&](ProgressSink& callbacks) {
+    const auto ids = mapping::cloudsNamed(impl_->file, names);
+    std::vector<mapping::ScanPose> moves;
+    for (std::size_t i = 0; i < ids.size(); ++i) moves.push_back({ids[i], poseOf(poses[i])});
+    return changesOf(mapping::moveScans(impl_->file, moves, changeParams(options), callbacks));
+  });
 }
 
 Map Map::merge(const std::vector<std::filesystem::path>& maps, const std::filesystem::path& target,
                const ChangeOptions& options, ProgressSink& sink) {
   std::vector<mapping::MapToMerge> parts;
-  for (const std::filesystem::path& map : maps) parts.push_back({map, Eigen::Isometry3d::Identity()});
+  for (const std::filesystem::path& map : maps) {
+    requirePath(map, "a map to be merged");
+    parts.push_back({map, Eigen::Isometry3d::Identity()});
+  }
+  requirePath(target, "the merged map");
   if (options.dry_run) throw Error(ErrorKind::InvalidArgument, "dry_run: a merge makes the map that it returns");
-  mapping::mergeMaps(parts, target, {.change = changeParams(options), .use = std::nullopt, .force = false}, sink);
+  WritingCall call(target, sink);
+  const mapping::MergeParams params{.change = changeParams(options), .use = std::nullopt, .force = false};
+  guarded([&] { mapping::mergeMaps(parts, target, params, call); }, &call);
   return open(target);
 }
 
 Explanation Map::explain(const std::string& name) const {
-  const std::lock_guard lock(impl_->mutex);
-  const tasks::ExplanationTexts texts = tasks::explainThing(impl_->newest(), name);
-  return {texts.text, texts.json};
+  return impl_->reading([&](const mapping::MapReader& map) -> Explanation {
+    const tasks::ExplanationTexts texts = tasks::explainThing(map, name);
+    return {texts.text, texts.json};
+  });
 }
 
 std::vector<Object> Map::objects() const {
@@ -207,18 +269,15 @@ std::vector<Object> Map::objects(std::string_view class_name) const {
 }
 
 std::vector<Cloud> Map::clouds() const {
-  const std::lock_guard lock(impl_->mutex);
-  return cloudsOf(impl_->newest());
+  return impl_->reading([](const mapping::MapReader& map) { return cloudsOf(map); });
 }
 
 PointCloud Map::points(const Cloud& cloud) const {
-  const std::lock_guard lock(impl_->mutex);
-  return pointsOf(impl_->newest(), cloud);
+  return impl_->reading([&](const mapping::MapReader& map) { return pointsOf(map, cloud); });
 }
 
 PointCloud Map::points(const Object& object) const {
-  const std::lock_guard lock(impl_->mutex);
-  return pointsOf(impl_->newest(), object);
+  return impl_->reading([&](const mapping::MapReader& map) { return pointsOf(map, object); });
 }
 
 }  // namespace cluxel

@@ -24,7 +24,7 @@ Answer answerOf(const rdf::QuadReader& reader, const std::string& pattern, const
                            std::string(rdf::vocabulary::kGraphObserved) + "> { " + pattern + "} } ORDER BY " + order;
   sparql::QueryOptions options;
   options.budget.max_memory_bytes = 0;
-  return Answer(std::make_shared<Answer::Data>(Answer::Data{sparql::evaluateQuery(reader, text, options), {}}));
+  return Answer::Data::answer({sparql::evaluateQuery(reader, text, options), {}});
 }
 
 Extent extentOf(const Answer::Row& row) {

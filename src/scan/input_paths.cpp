@@ -21,6 +21,7 @@ struct PathFault {
 };
 
 std::optional<PathFault> faultOf(const fs::path& input) {
+  if (input.empty()) return PathFault{"an empty path names no file", ""};
   std::error_code error;
   const fs::file_status status = fs::status(input, error);
   if (!fs::exists(status) && fs::status_known(status)) return PathFault{"there is no such file or folder", ""};

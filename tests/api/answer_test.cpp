@@ -5,6 +5,9 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <iterator>
+#include <ranges>
+#include <type_traits>
 
 #include "api/facade_campus.hpp"
 #include "sparql/query_engine.hpp"
@@ -17,6 +20,9 @@ using ::testing::HasSubstr;
 const Map& campusMap() {
   return FacadeCampus::shared().map;
 }
+
+static_assert(std::input_iterator<Answer::Iterator> && std::ranges::input_range<const Answer>);
+static_assert(!std::is_constructible_v<Answer, std::shared_ptr<const Answer::Data>>, "no answer is made without data");
 
 const std::string kPrefix = "PREFIX clx: <https://w3id.org/cluxel/ontology#> ";
 
@@ -135,6 +141,9 @@ TEST(Query, EndsAtItsLimits) {
   options = {};
   options.max_memory_bytes = 1 << 20;
   EXPECT_EQ(kindWith(options), ErrorKind::BudgetExceeded);
+  options = {};
+  options.deadline = std::chrono::milliseconds(-5);
+  EXPECT_EQ(kindWith(options), ErrorKind::InvalidArgument);
 }
 
 TEST(Answer, IsGivenUpWhenThePollThrows) {

@@ -143,6 +143,56 @@ TEST(Map, RefusesOptionsThatContradictEachOther) {
   EXPECT_EQ(kindOf([&] { Map::build({}, "map.clx", options); }), ErrorKind::InvalidArgument);
 }
 
+TEST(Map, RefusesPathsThatAreEmptyOrThatNoFileCanHave) {
+  ProgressSink silence;
+  const rdf::ScratchFolder folder;
+  const auto files = FacadeCampus::shared().campus.files();
+  const BuildOptions options = FacadeCampus::options();
+  Map map = FacadeCampus::shared().copyIn(folder.path());
+  EXPECT_EQ(kindOf([] { Map::open(""); }), ErrorKind::InvalidArgument);
+  EXPECT_EQ(kindOf([&] { Map::open("", silence); }), ErrorKind::InvalidArgument);
+  EXPECT_EQ(kindOf([&] { Map::build(files, "", options); }), ErrorKind::InvalidArgument);
+  EXPECT_EQ(kindOf([&] {
+              Map::merge({map.file(), ""}, folder.path() / "new.clx", {}, silence);
+            }),
+            ErrorKind::InvalidArgument);
+  EXPECT_EQ(kindOf([&] { Map::merge({map.file()}, "", {}, silence); }), ErrorKind::InvalidArgument);
+  EXPECT_EQ(kindOf([&] { Map::build({""}, folder.path() / "new.clx", options); }), ErrorKind::FaultyInput);
+  EXPECT_EQ(kindOf([&] { map.extend({""}, {}, silence); }), ErrorKind::FaultyInput);
+  const std::filesystem::path far_too_long = folder.path() / std::string(1000, 'x');
+  for (const auto& call : std::vector<std::function<void()>>{
+           [&] { Map::open(far_too_long); }, [&] { Map::build(files, far_too_long, options); },
+           [&] { Map::build({far_too_long}, folder.path() / "new.clx", options); },
+           [&] { map.extend({far_too_long}, {}, silence); },
+           [&] { map.extend(files, {.poses = far_too_long}, silence); },
+           [&] { Map::merge({map.file()}, far_too_long, {}, silence); },
+           [&] { Map::merge({far_too_long}, folder.path() / "new.clx", {}, silence); }})
+    EXPECT_THROW(call(), Error);
+  BuildOptions homeless = options;
+  homeless.home = far_too_long;
+  EXPECT_THROW(Map::build(files, folder.path() / "new.clx", homeless), Error);
+}
+
+TEST(Map, LimitsTimeAndMemoryOfAnUpdate) {
+  const rdf::ScratchFolder folder;
+  Map map = FacadeCampus::shared().copyIn(folder.path());
+  const std::string all = "INSERT { ?a <http://example.org/p> ?f } WHERE { ?a ?b ?c . ?d ?e ?f }";
+  EXPECT_EQ(kindOf([&] { map.update(all, {.deadline = std::chrono::milliseconds(5)}); }), ErrorKind::BudgetExceeded);
+  EXPECT_EQ(kindOf([&] { map.update(all, {.max_memory_bytes = 1 << 20}); }), ErrorKind::BudgetExceeded);
+  EXPECT_EQ(kindOf([&] { map.update("INSERT DATA {}", {.deadline = std::chrono::milliseconds(-1)}); }),
+            ErrorKind::InvalidArgument);
+  UpdateOptions options;
+  options.poll = [&] { map.update("INSERT DATA {}"); };
+  EXPECT_EQ(kindOf([&] { map.update(all, options); }), ErrorKind::InvalidArgument) << "it would wait for itself";
+  try {
+    map.update("INSERT DATA { <a", {.source_name = "mine.ru"});
+    FAIL() << "nothing was refused";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.diagnostics().front().location.file, "mine.ru");
+  }
+  EXPECT_EQ(map.summary().quads, mapOfCampus().summary().quads) << "nothing was changed";
+}
+
 class NoteKeeper : public ProgressSink {
  public:
   void note(std::string_view message) override { notes += std::string(message) + '\n'; }

@@ -56,6 +56,27 @@ def test_merged_maps_are_the_map_of_all_scans(campus, tmp_path):
     assert canonical(merged) == canonical(campus.map)
 
 
+def test_callbacks_read_the_map_and_may_not_write_it(copied_map):
+    seen, refused = [], []
+
+    def look(*_):
+        if len(seen) > 2:
+            return
+        thing, scan = copied_map.objects()[0], copied_map.clouds()[0]
+        seen.append((copied_map.summary().clouds, len(copied_map.points(scan)), len(copied_map.points(thing)),
+                     len(copied_map.explain_text(thing)), len(copied_map.query("ASK { ?s ?p ?o }"))))
+        for write in (lambda: copied_map.update("INSERT DATA { <http://a> <http://b> 1 }"),
+                      lambda: copied_map.retract([scan.id])):
+            with pytest.raises(cluxel.InvalidArgumentError, match="a callback of a call that writes this map"):
+                write()
+            refused.append(write)
+
+    clouds = copied_map.clouds()
+    copied_map.retract([clouds[0].id], progress=look, note=look)
+    assert len(refused) == 2 * len(seen) == 6 and seen[0][0] == len(clouds)
+    assert copied_map.summary().clouds == len(clouds) - 1
+
+
 def test_wrong_names_and_poses_are_errors(copied_map):
     with pytest.raises(cluxel.NotFoundError):
         copied_map.retract(["no-such-scan.pcd"])

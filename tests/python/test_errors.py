@@ -56,6 +56,19 @@ def test_all_faults_of_a_file_are_reported(campus, tmp_path):
     assert error.hint is not None and "top" in error.hint
 
 
+def test_empty_paths_and_wrong_types_are_errors(campus, tmp_path):
+    for call in (lambda: cluxel.open(""), lambda: campus.build(""), lambda: cluxel.merge([campus.file], ""),
+                 lambda: cluxel.merge([""], tmp_path / "new.clx")):
+        with pytest.raises(cluxel.InvalidArgumentError, match="the path is empty"):
+            call()
+    with pytest.raises(cluxel.FaultyInputError, match="an empty path names no file"):
+        campus.build(tmp_path / "map.clx", scans=[""])
+    with pytest.raises(TypeError):
+        cluxel.open(5)
+    with pytest.raises(TypeError):
+        campus.map.query("ASK {}", max_rows="many")
+
+
 def test_what_is_not_known_is_none(tmp_path):
     with pytest.raises(cluxel.StoreUnavailableError, match="there is no such file") as raised:
         cluxel.open(tmp_path / "absent.clx")
