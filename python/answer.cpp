@@ -37,22 +37,30 @@ std::optional<double> numberOf(const Term* term) {
 }
 
 /// What the cells of a column have in common.
-enum class ColumnKind : std::uint8_t { Integers, Numbers, Text };
+enum class ColumnKind : std::uint8_t { Integers, LargeIntegers, Numbers, Text };
 
-bool isInteger(const Term& term) {
-  return isIntegerType(term.datatype) && numberOf<std::int64_t>(term.text).has_value();
+/// Whether a double holds it exactly.
+bool isExactAsDouble(const Term& integer) {
+  constexpr std::int64_t kExact = std::int64_t{1} << 53;
+  const auto value = numberOf<std::int64_t>(integer.text);
+  return value && -kExact <= *value && *value <= kExact;
 }
 
 ColumnKind columnKindOf(const Answer& answer, std::size_t column) {
-  bool is_whole = true, has_number = false;
+  if (answer.empty()) return ColumnKind::Numbers;
+  bool are_whole = true, fit_int64 = true, fit_double = true, has_number = false;
   for (std::size_t row = 0; row < answer.size(); ++row) {
     const Term* term = answer.at(row, column);
     if (term != nullptr && !numberOf(term)) return ColumnKind::Text;
     has_number = has_number || term != nullptr;
-    is_whole = is_whole && term != nullptr && isInteger(*term);
+    are_whole = are_whole && (term == nullptr || isIntegerType(term->datatype));
+    fit_int64 = fit_int64 && term != nullptr && numberOf<std::int64_t>(term->text);
+    fit_double = fit_double && (term == nullptr || isExactAsDouble(*term));
   }
   if (!has_number) return ColumnKind::Text;
-  return is_whole ? ColumnKind::Integers : ColumnKind::Numbers;
+  if (!are_whole) return ColumnKind::Numbers;
+  if (fit_int64) return ColumnKind::Integers;
+  return fit_double ? ColumnKind::Numbers : ColumnKind::LargeIntegers;
 }
 
 py::array_t<double> numbersOf(const Answer& answer, std::size_t column) {
@@ -84,10 +92,18 @@ py::list textsOf(const Answer& answer, std::size_t column) {
   return cellsOf(answer, column, [](const Term& term) -> py::object { return py::str(term.text); });
 }
 
+/// Python numbers of any size, in an array, so that it adds and compares as the others do.
+py::object largeIntegersOf(const Answer& answer, std::size_t column) {
+  const py::list cells = cellsOf(answer, column, [](const Term& term) { return valueOf(term); });
+  return py::module_::import("numpy").attr("array")(cells, py::arg("dtype") = "object");
+}
+
 py::object columnOf(const Answer& answer, std::size_t column) {
   switch (columnKindOf(answer, column)) {
     case ColumnKind::Integers:
       return integersOf(answer, column);
+    case ColumnKind::LargeIntegers:
+      return largeIntegersOf(answer, column);
     case ColumnKind::Numbers:
       return numbersOf(answer, column);
     default:
@@ -155,8 +171,9 @@ void bindColumns(py::class_<Answer>& answers) {
           [](const Answer& answer, const std::string& variable) { return columnOf(answer, answer.column(variable)); },
           py::arg("variable"),
           "The column of a variable, shape (rows,): an int64 array when all cells are whole numbers, a float64 array\n"
-          "(NaN: unbound) when all bound cells are numbers, else a list of str with None for unbound cells. An empty\n"
-          "column and one without bound cells is a list; numbers(variable) is an array always.")
+          "(NaN: unbound) when all bound cells are numbers, else a list of str with None for unbound cells. Whole\n"
+          "numbers that such an array would round are an array of int and None (dtype object). Without rows: an empty\n"
+          "float64 array. numbers(variable), texts(variable) and terms(variable) give the same type always.")
       .def(
           "numbers",
           [](const Answer& answer, const std::string& variable) { return numbersOf(answer, answer.column(variable)); },

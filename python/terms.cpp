@@ -74,15 +74,22 @@ bool isNumberText(const std::string& text, const std::string& datatype) {
   return text.find_first_not_of("0123456789+-.") == std::string::npos;
 }
 
-Term termOf(const py::handle& value) {
+/// A number of NumPy as Python has it; other values as they are.
+py::object withoutNumpy(const py::handle& value) {
+  const py::object generic = py::module_::import("numpy").attr("generic");
+  return py::isinstance(value, generic) ? value.attr("item")() : py::reinterpret_borrow<py::object>(value);
+}
+
+Term termOf(const py::handle& given) {
+  const py::object value = withoutNumpy(given);
   if (py::isinstance<Term>(value)) return value.cast<Term>();
   if (py::isinstance<py::bool_>(value)) return Term::boolean(value.cast<bool>());
   if (py::isinstance<py::int_>(value))
     return Term::literal(py::str(value).cast<std::string>(), std::string(kXsd) + "integer");
   if (py::isinstance<py::float_>(value)) return Term::real(value.cast<double>());
   if (py::isinstance<py::str>(value)) return Term::literal(value.cast<std::string>());
-  throw Error(ErrorKind::InvalidArgument, "a value is Term, str, bool, int or float, not " +
-                                              py::str(py::type::handle_of(value).attr("__name__")).cast<std::string>() +
+  throw Error(ErrorKind::InvalidArgument, "a value is Term, str, bool, int or float (also of NumPy), not " +
+                                              py::str(py::type::handle_of(given).attr("__name__")).cast<std::string>() +
                                               "; cluxel.Term.iri(...) makes an IRI");
 }
 

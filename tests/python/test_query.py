@@ -64,7 +64,7 @@ def test_rows_hold_python_values(campus_map):
     ('1 2.5', [1.0, 2.5]),
     ('"1e3"^^xsd:double "-INF"^^xsd:double', [1000.0, -math.inf]),
     ('9223372036854775807 -9223372036854775808', [2**63 - 1, -2**63]),
-    ('9223372036854775808 0', [2.0**63, 0.0]),
+    ('9007199254740992 UNDEF', [2.0**53, math.nan]),
     ('1 "one"', ["1", "one"]),
     ('"1" "2"', ["1", "2"]),
     ('1 "x"^^xsd:integer', ["1", "x"]),
@@ -84,10 +84,24 @@ def test_columns_by_their_cells(campus_map, values, expected):
     assert len(answer.texts("v")) == 2
 
 
+@pytest.mark.parametrize("values, expected", [
+    ("9223372036854775808 0", [2**63, 0]),
+    ("9007199254740993 UNDEF", [2**53 + 1, None]),
+    ("-123456789012345678901234567890 7", [-123456789012345678901234567890, 7]),
+])
+def test_whole_numbers_keep_all_digits(campus_map, values, expected):
+    column = campus_map.query("SELECT ?v { VALUES ?v { %s } }" % values)["v"]
+    assert column.dtype == object and column.tolist() == expected
+    assert all(value is None or type(value) is int for value in column)
+
+
 def test_an_empty_answer_has_empty_columns(campus_map):
     answer = campus_map.query("SELECT ?x { ?x <http://example.org/none> ?y }")
-    assert len(answer) == 0 and not answer and answer["x"] == []
-    assert answer.numbers("x").shape == (0,)
+    assert len(answer) == 0 and not answer
+    assert answer["x"].shape == answer.numbers("x").shape == (0,) and answer["x"].dtype == np.float64
+    with pytest.warns(RuntimeWarning):
+        assert math.isnan(answer["x"].mean())
+    assert answer.texts("x") == []
 
 
 def test_ask_is_true_or_false(campus_map):
@@ -105,7 +119,9 @@ def test_construct_gives_triples_of_terms(campus_map):
 
 @pytest.mark.parametrize("value, expected", [
     (5, ("5", "integer")), (2**70, (str(2**70), "integer")), (0.5, ("5.0E-1", "double")), (True, ("true", "boolean")),
-    ("five", ("five", "string")),
+    ("five", ("five", "string")), (np.int64(5), ("5", "integer")), (np.uint8(5), ("5", "integer")),
+    (np.float64(0.5), ("5.0E-1", "double")), (np.float32(0.5), ("5.0E-1", "double")), (np.bool_(True), ("true", "boolean")),
+    (np.str_("five"), ("five", "string")),
 ])
 def test_bindings_take_python_values(campus_map, value, expected):
     (term,) = campus_map.query("SELECT (?v AS ?w) {}", bindings={"v": value}).terms("w")
@@ -119,6 +135,8 @@ def test_bindings_take_terms(campus_map):
     assert answer["rule"] == [thing.rule]
     with pytest.raises(cluxel.InvalidArgumentError, match="not list"):
         campus_map.query("SELECT * {}", bindings={"o": [1]})
+    with pytest.raises(cluxel.InvalidArgumentError, match="not datetime64"):
+        campus_map.query("SELECT * {}", bindings={"o": np.datetime64("2026-01-01")})
 
 
 def test_ill_typed_literals_keep_their_text(campus_map):
@@ -152,6 +170,19 @@ def test_limits_end_a_query(campus_map):
     for wrong in (0, -1, math.nan):
         with pytest.raises(cluxel.InvalidArgumentError, match="deadline_s"):
             campus_map.query("ASK {}", deadline_s=wrong)
+
+
+def test_limits_end_an_update(copied_map):
+    pairs = "INSERT { ?a <http://example.org/p> ?d } WHERE { ?a ?p ?b . ?c ?q ?d }"
+    before = copied_map.summary().quads
+    for limit in ({"deadline_s": 0.005}, {"max_memory_bytes": 1 << 20}):
+        with pytest.raises(cluxel.BudgetExceededError):
+            copied_map.update(pairs, **limit)
+    with pytest.raises(cluxel.InvalidArgumentError, match="deadline_s"):
+        copied_map.update(pairs, deadline_s=-1)
+    with pytest.raises(cluxel.FaultyInputError, match="mine.ru:1"):
+        copied_map.update("INSERT DATA { <a", source_name="mine.ru")
+    assert copied_map.summary().quads == before
 
 
 def test_warnings_name_unknown_properties(campus_map):
