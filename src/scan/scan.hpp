@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -18,12 +19,20 @@ namespace cluxel::scan {
 /// pose, path and file format.
 using ScanId = ContentHash;
 
+/// The label of a point that has none. Files write -1, or this number where labels are unsigned.
+inline constexpr std::uint32_t kNoLabel = 0xFFFFFFFFU;
+
+/// Points farther than this from the map's origin are refused: a wrong pose or unit [m].
+inline constexpr double kMaxCoordinate_m = 1e7;
+/// The same for heights, which stay absolute [m].
+inline constexpr double kMaxHeight_m = 2e4;
+
 /// The points of a scan as a structure of arrays, in metres in the sensor frame (REP-103: x forward, y left, z up).
 /// Optional arrays are either empty or as long as `x`.
 struct ScanPoints {
   std::vector<float> x, y, z;
   std::vector<float> intensity;
-  std::vector<std::uint32_t> label;     ///< the data set's own label ids
+  std::vector<std::uint32_t> label;     ///< the data set's own label ids, or kNoLabel
   std::vector<Eigen::Vector3f> origin;  ///< where each ray started, in the sensor frame [m]
 
   std::size_t size() const { return x.size(); }
@@ -46,5 +55,16 @@ ScanId contentIdOf(const Scan& scan);
 inline Eigen::Vector3d toMap(const Eigen::Isometry3d& T_map_sensor, const Eigen::Vector3f& p_sensor) {
   return T_map_sensor * p_sensor.cast<double>();
 }
+
+/// Whether a map can hold a point there; false for what is not a number.
+inline bool isInMapRange(const Eigen::Vector3d& p_map) {
+  return std::abs(p_map.x()) <= kMaxCoordinate_m && std::abs(p_map.y()) <= kMaxCoordinate_m &&
+         std::abs(p_map.z()) <= kMaxHeight_m;
+}
+
+/// Refuses a scan because of a point that is not isInMapRange().
+[[noreturn]] void refusePointOutOfRange(const Scan& scan, std::size_t point);
+/// Refuses a scan that has such a point. Cost: one pass over the coordinates.
+void requireInMapRange(const Scan& scan);
 
 }  // namespace cluxel::scan

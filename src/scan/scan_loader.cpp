@@ -94,6 +94,7 @@ LoadedScan loadScan(const ScanFile& file) {
   scan.source = file.path.string();
   if (file.labels) parsed.points.label = readLabels(file, parsed);
   scan.points = std::move(parsed.points);
+  requireInMapRange(scan);
   scan.id = contentIdOf(scan);
   loaded.reading = {scan.source, parsed.no_return.size(), parsed.ignored_fields, frameDoubtsOf(scan)};
   return loaded;

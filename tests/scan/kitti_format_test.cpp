@@ -44,9 +44,9 @@ TEST(KittiFormat, SkipsAndCountsPointsWithoutAReturn) {
 
 TEST(KittiFormat, RefusesUnusableNumbersNamingTheByte) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
-  const std::string late = bytesOfAll(1.F, 2.F, 3.F, 0.F, 1.F, 1e9F, 3.F, 0.F);
+  const std::string late = bytesOfAll(1.F, 2.F, 3.F, 0.F, 1.F, 1e11F, 3.F, 0.F);
   EXPECT_THAT(refusalOf([&] { parseKittiPoints(late, "a.bin"); }),
-              HasSubstr("byte 16: error: point 1 has a coordinate beyond 100000 km"));
+              HasSubstr("byte 16: error: point 1 has a coordinate beyond 10000 km"));
   const std::string dark = bytesOfAll(1.F, 2.F, 3.F, nan);
   EXPECT_THAT(refusalOf([&] { parseKittiPoints(dark, "a.bin"); }),
               HasSubstr("byte 12: error: point 0 has an intensity"));

@@ -144,7 +144,7 @@ TEST(LasFormat, RefusesNumbersThatAreNotFinite) {
   EXPECT_THAT(refusalOf([&] { parseLas(offset, "a.las"); }), HasSubstr("byte 155: error: the offsets are not finite"));
   std::string huge = lasFile(2, 0, kPoints);
   put(huge, 139, 1e300);
-  EXPECT_THAT(refusalOf([&] { parseLas(huge, "a.las"); }), HasSubstr("point 0 has a coordinate beyond 100000 km"));
+  EXPECT_THAT(refusalOf([&] { parseLas(huge, "a.las"); }), HasSubstr("point 0 has a coordinate beyond 10000 km"));
 }
 
 }  // namespace

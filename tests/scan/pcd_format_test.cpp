@@ -150,7 +150,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(PcdFormat, RefusesBinaryNumbersOutOfRangeNamingTheByte) {
   const std::string head = header("x y z", "4 4 4", "F F F", 2, "binary");
-  const std::string bytes = head + bytesOfAll(1.F, 2.F, 3.F, 4.F, 1e9F, 6.F);
+  const std::string bytes = head + bytesOfAll(1.F, 2.F, 3.F, 4.F, 1e11F, 6.F);
   EXPECT_THAT(refusalOf([&] { parsePcd(bytes, "a.pcd"); }),
               HasSubstr("byte " + std::to_string(head.size() + 12) + ": error: point 1 has a coordinate beyond"));
 }

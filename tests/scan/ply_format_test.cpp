@@ -99,7 +99,7 @@ TEST(PlyFormat, RefusesEveryPrefixOfABinaryFile) {
 
 TEST(PlyFormat, RefusesBinaryNumbersOutOfRangeNamingTheByte) {
   const std::string head = header("binary_little_endian", 2, kXyz);
-  const std::string bytes = head + bytesOfAll(1.F, 2.F, 3.F, 4.F, 5.F, 1e9F);
+  const std::string bytes = head + bytesOfAll(1.F, 2.F, 3.F, 4.F, 5.F, 1e11F);
   EXPECT_THAT(refusalOf([&] { parsePly(bytes, "a.ply"); }),
               HasSubstr("byte " + std::to_string(head.size() + 12) + ": error: point 1 has a coordinate beyond"));
 }

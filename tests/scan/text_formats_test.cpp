@@ -93,7 +93,7 @@ INSTANTIATE_TEST_SUITE_P(
                     RefusedLine{"1 2.5m 3\n", "a.xyz:1:3: error: y is not a number: '2.5m'"},
                     RefusedLine{"1 2 1e999\n", "z is out of range"},
                     RefusedLine{"+-1 2 3\n", "a.xyz:1:1: error: x is not a number: '+-1'"},
-                    RefusedLine{"1e39 2 3\n", "a.xyz:1:9: error: the point has a coordinate beyond 100000 km"},
+                    RefusedLine{"1e39 2 3\n", "a.xyz:1:9: error: the point has a coordinate beyond 10000 km, even in"},
                     RefusedLine{"1 2 3\n1 2 3 4\n", "a.xyz:2:7: error: unexpected '4'"},
                     RefusedLine{"1 2 3 4\n1 2 3\n", "a.xyz:2:6: error: the line ends where intensity was expected"},
                     RefusedLine{"1 2 3 4 5\n", "unexpected '5'"}));
@@ -108,10 +108,17 @@ TEST(LabelledText, ReadsTheLayoutOfOakland) {
 TEST(LabelledText, RefusesLabelsThatAreNoWholeNumbers) {
   EXPECT_THAT(refusalOf([] { parseLabelledText("1 2 3 1.5 2\n", "a"); }),
               HasSubstr("a:1:7: error: label is not a number: '1.5'"));
-  EXPECT_THAT(refusalOf([] { parseLabelledText("1 2 3 -1 2\n", "a"); }), HasSubstr("label is not a whole number"));
+  EXPECT_THAT(refusalOf([] { parseLabelledText("1 2 3 -2 2\n", "a"); }),
+              HasSubstr("label is not a whole number from 0 to 4294967294, or -1 for none: '-2'"));
+  EXPECT_THAT(refusalOf([] { parseLabelledText("1 2 3 -12 2\n", "a"); }), HasSubstr("label is not a whole number"));
   EXPECT_THAT(refusalOf([] { parseLabelledText("1 2 3 4294967296 2\n", "a"); }),
               HasSubstr("label is not a whole number"));
   EXPECT_THAT(refusalOf([] { parseLabelledText("1 2 3 7\n", "a"); }), HasSubstr("confidence"));
+}
+
+TEST(LabelledText, TakesMinusOneForNoLabel) {
+  EXPECT_THAT(parseLabelledText("1 2 3 -1 2\n1 2 3 7 2\n", "a").points.label, ElementsAre(kNoLabel, 7U));
+  EXPECT_THAT(parseLabelLines("-1\n0\n", "l", 2), ElementsAre(kNoLabel, 0U));
 }
 
 TEST(FreiburgText, KeepsTheOriginOfEachRay) {

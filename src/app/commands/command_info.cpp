@@ -29,9 +29,13 @@ Json boxJson(const Eigen::AlignedBox3d& box) {
           {"max", {box.max().x(), box.max().y(), box.max().z()}}};
 }
 
+std::string nameOfLabel(std::uint32_t label) {
+  return label == scan::kNoLabel ? "none" : std::to_string(label);
+}
+
 Json labelsJson(const std::map<std::uint32_t, std::size_t>& labels) {
   Json json = Json::object();
-  for (const auto& [label, count] : labels) json[std::to_string(label)] = count;
+  for (const auto& [label, count] : labels) json[nameOfLabel(label)] = count;
   return json;
 }
 
@@ -67,7 +71,7 @@ void printScans(const scan::ScanSetSummary& summary) {
   if (!summary.crs.empty()) std::printf("coordinate system: %s\n", summary.crs.c_str());
   if (summary.points_by_label.empty()) return;
   std::printf("labels:");
-  for (const auto& [label, count] : summary.points_by_label) std::printf(" %u:%zu", label, count);
+  for (const auto& [label, count] : summary.points_by_label) std::printf(" %s:%zu", nameOfLabel(label).c_str(), count);
   std::printf("\n");
 }
 

@@ -123,17 +123,6 @@ std::uint32_t placeOf(const std::vector<scan::ScanId>& scans, const scan::ScanId
   return static_cast<std::uint32_t>(std::lower_bound(scans.begin(), scans.end(), scan) - scans.begin());
 }
 
-bool isUsable(const Eigen::Vector3d& p_map) {
-  return std::abs(p_map.x()) <= kMaxCoordinate_m && std::abs(p_map.y()) <= kMaxCoordinate_m &&
-         std::abs(p_map.z()) <= kMaxHeight_m;
-}
-
-InputError unusablePoint(const scan::Scan& scan, std::size_t point) {
-  return InputError({.file = scan.source},
-                    "point " + std::to_string(point) + " lies outside the map's range or is not a number",
-                    "coordinates may reach 10000 km, heights 20 km; check the pose, or give the manifest a map origin");
-}
-
 Error strayPoint(const scan::Scan& scan, std::uint32_t point) {
   return Error(ErrorKind::StoreUnavailable, "a tile names point " + std::to_string(point) + " of scan " +
                                                 scan.id.hex() +
@@ -176,7 +165,7 @@ std::map<TileKey, ScanSegment> splitScan(const scan::Scan& scan) {
   const auto& points = scan.points;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Eigen::Vector3d p_map = scan::toMap(scan.T_map_sensor, {points.x[i], points.y[i], points.z[i]});
-    if (!isUsable(p_map)) throw unusablePoint(scan, i);
+    if (!scan::isInMapRange(p_map)) scan::refusePointOutOfRange(scan, i);
     if (segment == nullptr || !liesAt(corner, p_map)) {
       const TileKey key = tileOf(p_map);
       corner = cornerOf(key);
@@ -253,7 +242,7 @@ void PointsFromScans::fill(const scan::Scan& scan) const {
       const std::uint32_t at = tile->point[i];
       if (at >= points.size()) throw strayPoint(scan, at);
       const Eigen::Vector3d p_map = scan::toMap(scan.T_map_sensor, {points.x[at], points.y[at], points.z[at]});
-      if (!liesAt(corner, p_map) || !isUsable(p_map)) throw strayPoint(scan, at);
+      if (!liesAt(corner, p_map) || !scan::isInMapRange(p_map)) throw strayPoint(scan, at);
       const Eigen::Vector3f p = relativeTo(corner, p_map);
       tile->x[i] = p.x(), tile->y[i] = p.y(), tile->z[i] = p.z();
       if (!tile->intensity.empty()) tile->intensity[i] = points.intensity.empty() ? 0.0F : points.intensity[at];

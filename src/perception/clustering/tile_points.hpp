@@ -19,10 +19,7 @@ namespace cluxel::perception {
 /// Local x and y are rounded to this step [m]: then they and their shifts to a neighbouring tile are exact floats, and
 /// a difference is the same number in either tile's frame.
 inline constexpr double kLocalStep_m = 1.0 / 262144.0;
-/// Points farther than this from the map's origin are refused: a wrong pose or unit [m].
-inline constexpr double kMaxCoordinate_m = 1e7;
-/// The same for heights, which stay absolute [m].
-inline constexpr double kMaxHeight_m = 2e4;
+using scan::kMaxHeight_m;
 
 struct ThinParams {
   double voxel_m = 0.05;  ///< edge of the voxels that are thinned

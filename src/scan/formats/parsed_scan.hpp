@@ -27,9 +27,10 @@ struct ParsedScan {
 /// A float beyond this is coarser than half a millimetre, so points are stored relative to a local origin.
 inline constexpr double kFloatReach_m = 4096;
 
-/// No terrestrial frame has larger coordinates, and tile indices would overflow.
-inline constexpr double kMaxCoordinate_m = 1e8;
-inline constexpr const char* kOutOfRange = "has a coordinate beyond 100000 km";
+/// 10 000 km in millimetres, the smallest unit. The points in metres are held to the range of maps when their unit and
+/// pose are known: requireInMapRange().
+inline constexpr double kMaxGivenCoordinate = 1e10;
+inline constexpr const char* kOutOfRange = "has a coordinate beyond 10000 km, even in millimetres";
 
 /// The local origin for a file whose first point is `first` [m]: zero within kFloatReach_m, else the nearest whole
 /// kilometres.
@@ -53,7 +54,7 @@ class PointCollector {
       scan_->no_return.push_back(record);
       return PointUse::NoReturn;
     }
-    if (std::max({std::abs(x), std::abs(y), std::abs(z)}) > kMaxCoordinate_m) return PointUse::OutOfRange;
+    if (std::max({std::abs(x), std::abs(y), std::abs(z)}) > kMaxGivenCoordinate) return PointUse::OutOfRange;
     if (scan_->points.empty()) scan_->local_origin = localOriginFor({x, y, z});
     const Eigen::Vector3d& origin = scan_->local_origin;
     scan_->points.x.push_back(static_cast<float>(x - origin.x()));

@@ -162,8 +162,8 @@ std::optional<std::string> RowCollector::add(const PointRow& row) {
   if (has(FieldRole::Label)) {
     const double label = at(row, FieldRole::Label);
     const bool whole = label >= -1 && label <= kMaxLabel && label == std::floor(label);
-    if (!whole) return "has a label that is not a whole number from 0 to 4294967295 (or -1 for none)";
-    scan_->points.label.push_back(label < 0 ? 0xFFFFFFFFU : static_cast<std::uint32_t>(label));
+    if (!whole) return "has a label that is not a whole number from 0 to 4294967294, or -1 for none";
+    scan_->points.label.push_back(label < 0 ? kNoLabel : static_cast<std::uint32_t>(label));
   }
   if (has(FieldRole::OriginX)) {
     const Eigen::Vector3d origin(at(row, FieldRole::OriginX), at(row, FieldRole::OriginY), at(row, FieldRole::OriginZ));

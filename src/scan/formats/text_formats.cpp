@@ -60,7 +60,7 @@ ParsedScan parseLabelledText(std::string_view bytes, const std::string& file) {
   PointCollector points(scan);
   while (scanner.nextLine()) {
     const bool added = addPoint(scanner, points);
-    const std::uint32_t label = scanner.count("label");
+    const std::uint32_t label = scanner.label("label");
     if (added) scan.points.label.push_back(label);
     scanner.number("confidence");
     scanner.endLine("x y z label confidence");
@@ -90,7 +90,7 @@ std::vector<std::uint32_t> parseLabelLines(std::string_view bytes, const std::st
   while (scanner.nextLine()) {
     if (labels.size() == point_count)
       scanner.refuse("more labels than the scan's " + std::to_string(point_count) + " points");
-    labels.push_back(scanner.count("label"));
+    labels.push_back(scanner.label("label"));
     scanner.endLine("one label id");
   }
   if (labels.size() != point_count)

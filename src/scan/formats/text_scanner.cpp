@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "cluxel/error.hpp"
+#include "scan/scan.hpp"
 
 namespace cluxel::scan {
 
@@ -70,6 +71,17 @@ std::uint32_t TextScanner::count(const char* what) {
     refuse(std::string(what) + " is not a whole number from 0 to 4294967295: '" + wordAt() + "'");
   endNumber(end, what);
   return value;
+}
+
+std::uint32_t TextScanner::label(const char* what) {
+  if (atLineEnd()) refuse(std::string("the line ends where ") + what + " was expected");
+  if (checked_line_ != line_) checkCommas();
+  std::int64_t value = 0;
+  const auto [end, error] = std::from_chars(at_, stop_, value);
+  if (error != std::errc() || value < -1 || value > kNoLabel)
+    refuse(std::string(what) + " is not a whole number from 0 to 4294967294, or -1 for none: '" + wordAt() + "'");
+  endNumber(end, what);
+  return value < 0 ? kNoLabel : static_cast<std::uint32_t>(value);
 }
 
 void TextScanner::endNumber(const char* end, const char* what) {

@@ -32,6 +32,8 @@ class TextScanner {
   /// The next number of the line, which may be NaN or infinite.
   double anyNumber(const char* what);
   std::uint32_t count(const char* what);
+  /// The next number of the line, a label; kNoLabel for -1.
+  std::uint32_t label(const char* what);
   /// The next word of the line, ended by a blank.
   std::string_view word(const char* what);
   /// For a text whose last number has a known value: it need not be followed by a line end.

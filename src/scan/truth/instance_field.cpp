@@ -10,7 +10,6 @@ namespace cluxel::scan {
 
 namespace {
 
-constexpr std::uint32_t kNoLabel = 0xFFFFFFFFU;
 /// Evaluation numbers the objects of several scans one after the other.
 constexpr std::uint32_t kMaxInstances = 1'000'000;
 
@@ -33,7 +32,6 @@ std::vector<std::int32_t> instancesFromFile(const std::filesystem::path& file, c
         remedy);
   std::vector<std::int32_t> instances;
   instances.reserve(numbers.size());
-  // The reader of labels gives the largest number for -1, which is none.
   for (const std::uint32_t number : numbers) {
     if (number != kNoLabel && number > kMaxInstances)
       throw InputError({.file = file.string()}, "the field '" + field + "' holds " + std::to_string(number),
