@@ -3,8 +3,9 @@
 #include "tasks/query_source.hpp"
 
 #include <algorithm>
-#include <charconv>
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <optional>
 #include <set>
 #include <sstream>
@@ -16,6 +17,7 @@
 #include "mapping/build/work_file.hpp"
 #include "rdf/io/rdf_io.hpp"
 #include "rdf/vocabulary.hpp"
+#include "tasks/finite_number.hpp"
 
 namespace cluxel::tasks {
 
@@ -72,6 +74,22 @@ bool readColumn(HeaderReader& header, Question& question) {
   return true;
 }
 
+/// Reads `(from 0)` or `(from 0 to 1)`; without it the range stays open.
+bool readRange(HeaderReader& header, QueryParameter& parameter) {
+  if (!header.mark("(from ")) return true;
+  const auto bound = [&](double& value) {
+    std::string word = header.word();
+    const bool is_last = word.ends_with(')');
+    if (is_last) word.pop_back();
+    const auto number = finiteNumber(word);
+    if (number) value = *number;
+    return number ? std::optional(is_last) : std::nullopt;
+  };
+  const auto is_closed = bound(parameter.min);
+  if (!is_closed || *is_closed) return is_closed.has_value();
+  return header.mark("to ") && bound(parameter.max) == true;
+}
+
 bool readParameter(HeaderReader& header, Question& question) {
   QueryParameter parameter;
   parameter.name = header.name();
@@ -79,6 +97,7 @@ bool readParameter(HeaderReader& header, Question& question) {
   if (parameter.name.empty() || !unit || !header.mark("=")) return false;
   parameter.unit = *unit;
   parameter.default_value = header.word();
+  if (!readRange(header, parameter)) return false;
   parameter.help = header.rest();
   question.parameters.push_back(std::move(parameter));
   return !question.parameters.back().default_value.empty();
@@ -97,14 +116,34 @@ void readHeaderLine(std::string_view line, const SourceLocation& at, Question& q
                                                    : false;
   if (is_read) return;
   constexpr std::size_t max_shown = 200;
-  throw InputError(at, "this header line cannot be read: '" + std::string(line.substr(0, max_shown)) + "'",
-                   "write '#! title: …', '#! column: name [unit] help' or '#! parameter: name [unit] = default help'");
+  throw InputError(
+      at, "this header line cannot be read: '" + std::string(line.substr(0, max_shown)) + "'",
+      "write '#! title: …', '#! column: name [unit] help' or '#! parameter: name [unit] = default help'; a range "
+      "stands behind the default: '= 0.5 (from 0 to 1) help'");
 }
 
 bool isNumber(const std::string& text) {
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc() && end == text.data() + text.size() && std::isfinite(value);
+  return finiteNumber(text).has_value();
+}
+
+std::string shownNumber(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%g", value);
+  return text.data();
+}
+
+/// " from 0 to 1"; empty for an open range.
+std::string rangeText(const QueryParameter& parameter) {
+  std::string text;
+  if (std::isfinite(parameter.min)) text += " from " + shownNumber(parameter.min);
+  if (std::isfinite(parameter.max)) text += " to " + shownNumber(parameter.max);
+  return text;
+}
+
+/// Whether a value fits a parameter whose default is a number.
+bool isInRange(const std::string& text, const QueryParameter& parameter) {
+  const auto value = finiteNumber(text);
+  return value && *value >= parameter.min && *value <= parameter.max;
 }
 
 Term termOf(const std::string& text) {
@@ -179,9 +218,9 @@ std::vector<sparql::Binding> bindingsFor(const Question& question, const std::ve
     if (!given_names.insert(name).second) refuse(text, "it may be given once");
     const QueryParameter& parameter = question.parameters[at];
     const std::string value = text.substr(cut + 1);
-    if (isNumber(parameter.default_value) && !isNumber(value))
-      refuse(text,
-             "a number is expected [" + parameter.unit + "], with a point, for example " + parameter.default_value);
+    if (isNumber(parameter.default_value) && !isInRange(value, parameter))
+      refuse(text, "a number" + rangeText(parameter) + " is expected [" + parameter.unit +
+                       "], with a point, for example " + parameter.default_value);
     bindings[at].second = termOf(value);
   }
   return bindings;

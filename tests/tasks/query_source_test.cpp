@@ -105,6 +105,32 @@ TEST_F(Questions, ANumberIsExpectedWhereTheDefaultIsOne) {
   }
 }
 
+TEST_F(Questions, AParameterMayHaveARange) {
+  const Question question = read(
+      "#! parameter: far [m] = 5 (from 0) how far\n#! parameter: share [1] = 0.5 (from -1 to 1)\n"
+      "#! parameter: free [m] = 1 (as the crow flies)\nASK { }\n");
+  ASSERT_EQ(question.parameters.size(), 3U);
+  EXPECT_EQ(question.parameters[0].help, "how far");
+  EXPECT_EQ(question.parameters[1].help, "");
+  EXPECT_EQ(question.parameters[2].help, "(as the crow flies)");
+  bindingsFor(question, {"far=0", "share=-1", "free=-1e9"});
+  bindingsFor(question, {"far=1e9", "share=1"});
+  const auto refusal = [&](const char* given) {
+    try {
+      bindingsFor(question, {given});
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string("nothing was refused");
+  };
+  EXPECT_NE(refusal("far=-3").find("far=-3: a number from 0 is expected [m]"), std::string::npos) << refusal("far=-3");
+  EXPECT_NE(refusal("share=1.1").find("a number from -1 to 1 is expected [1]"), std::string::npos);
+  for (const char* range : {"(from )", "(from a)", "(from 0 to)", "(from 0 1)", "(from 0 to 1", "(from 0 to b)"})
+    EXPECT_NE(fault("#! parameter: far [m] = 5 " + std::string(range) + " x\n").find("question.rq:1"),
+              std::string::npos)
+        << range;
+}
+
 TEST_F(Questions, AnUnknownParameterIsAnErrorOfUsage) {
   const Question question = read("#! parameter: within [m] = 5 x\nASK { }\n");
   for (const char* text : {"wihtin=3", "within", "=3"}) {

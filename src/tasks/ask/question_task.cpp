@@ -141,6 +141,8 @@ Task questionTask(const Question& question) {
     parameter.unit = p.unit;
     parameter.default_value = p.default_value;
     parameter.help = p.help;
+    parameter.min = p.min;
+    parameter.max = p.max;
     parameter.kind = isNumberUnit(p.unit) ? TaskParameter::Kind::Number : TaskParameter::Kind::Text;
     task.parameters.push_back(std::move(parameter));
   }
