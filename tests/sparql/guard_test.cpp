@@ -298,6 +298,11 @@ TEST(CheckQuery, SuggestsNamesThatTheStoreKnows) {
   EXPECT_THAT(found[1].message, HasSubstr("property"));
   EXPECT_THAT(found[1].hint, HasSubstr("height"));
   EXPECT_EQ(found[1].severity, Severity::Warning);
+  for (const auto& [warning, name] : {std::pair(found[0], ":StretSign"), std::pair(found[1], ":hieght")})
+    EXPECT_EQ(warning.location.column, warning.source_line.find(name) + 1) << "the caret stands below " << name;
+  const auto in_path = checkQuery(reader, kPrefixes + "SELECT * { ?x a/^(:height|:weight)* ?y }");
+  ASSERT_EQ(in_path.size(), 1u);
+  EXPECT_EQ(in_path[0].location.column, in_path[0].source_line.find(":weight") + 1);
   EXPECT_TRUE(checkQuery(reader, kPrefixes + "SELECT * { ?x a :StreetSign ; :height ?h }").empty());
 }
 

@@ -106,6 +106,7 @@ struct CompiledPath {
   std::vector<CompiledPath> parts;
   std::vector<ValueId> forward, backward;  ///< of a negated set
   bool has_backward = false, has_forward = false;
+  ast::SourceOffset at = 0;
 };
 
 struct TripleNode {
@@ -114,6 +115,7 @@ struct TripleNode {
   std::shared_ptr<const CompiledPath> path;  ///< if null, `predicate` is used
   std::vector<ValueId> not_predicates;       ///< excluded predicates (negated property sets)
   ast::SourceOffset at = 0;
+  ast::SourceOffset predicate_at = 0, object_at = 0;  ///< of names, for warnings about them
 };
 
 struct AggregateSpec {

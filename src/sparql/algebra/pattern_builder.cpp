@@ -9,9 +9,14 @@ NodePtr AlgebraBuilder::triples(const ast::TriplesBlock& block, Scope& scope) {
   NodePtr node = unit(scope);
   for (const ast::TriplePattern& pattern : block.triples) {
     const PatternPlace subject = place(pattern.subject, scope), object = place(pattern.object, scope);
-    NodePtr next = pattern.isPath()
-                       ? path(subject, *pattern.path, object, scope)
-                       : triple(subject, place(pattern.predicate, scope), object, scope, pattern.subject.at);
+    NodePtr next;
+    if (pattern.isPath()) {
+      next = path(subject, *pattern.path, object, scope);
+    } else {
+      next = triple(subject, place(pattern.predicate, scope), object, scope, pattern.subject.at);
+      next->triple.predicate_at = pattern.predicate.at;
+      next->triple.object_at = pattern.object.at;
+    }
     node = join(node, next, scope);
   }
   return node;
@@ -25,7 +30,7 @@ NodePtr AlgebraBuilder::triple(const PatternPlace& subject, const PatternPlace& 
   node->triple.predicate = predicate;
   node->triple.object = object;
   node->triple.graph = scope.graph;
-  node->triple.at = at;
+  node->triple.at = node->triple.predicate_at = node->triple.object_at = at;
   node->annotate();
   return node;
 }
@@ -86,6 +91,7 @@ NodePtr AlgebraBuilder::negatedSet(const PatternPlace& subject, const ast::Path&
 CompiledPath AlgebraBuilder::compile(const ast::Path& path) {
   CompiledPath compiled;
   compiled.kind = path.kind;
+  compiled.at = path.at;
   if (path.kind == ast::Path::Kind::Link) compiled.iri = terms_.intern(path.iri);
   for (const ast::Path& part : path.parts) compiled.parts.push_back(compile(part));
   for (const Term& iri : path.forward) compiled.forward.push_back(terms_.intern(iri));

@@ -103,20 +103,20 @@ class NameCheck {
     if (expression.pattern) visit(*expression.pattern);
     for (const Expr& argument : expression.arguments) visit(argument);
   }
-  void visit(const CompiledPath& path, ast::SourceOffset at) {
-    warnPredicate(path.iri, at);
-    for (const auto& part : path.parts) visit(part, at);
+  void visit(const CompiledPath& path) {
+    warnPredicate(path.iri, path.at);
+    for (const auto& part : path.parts) visit(part);
   }
   void visitTriple(const TripleNode& triple) {
-    if (triple.path) visit(*triple.path, triple.at);
-    if (!triple.path && !triple.predicate.isSlot()) warnPredicate(triple.predicate.constant, triple.at);
+    if (triple.path) visit(*triple.path);
+    if (!triple.path && !triple.predicate.isSlot()) warnPredicate(triple.predicate.constant, triple.predicate_at);
     if (triple.graph.kind == GraphPlace::Kind::Constant && triple.graph.constant >= kFirstComputed) {
       warn("graph", triple.graph.constant, triple.at, storedGraphs());
     }
     const bool is_type =
         !triple.path && !triple.predicate.isSlot() && textOf(triple.predicate.constant) == rdf::vocabulary::rdf("type");
     if (is_type && !triple.object.isSlot() && triple.object.constant >= kFirstComputed) {
-      warn("class", triple.object.constant, triple.at, knownClasses(query_.reader));
+      warn("class", triple.object.constant, triple.object_at, knownClasses(query_.reader));
     }
   }
   void warnPredicate(ValueId id, ast::SourceOffset at) {
