@@ -123,6 +123,13 @@ TEST(QuestionsOfACampus, EveryTaskAnswersInEveryFormatWithTheSameRows) {
   EXPECT_GT(with_reasons, 20U) << "objects and stops tell why";
 }
 
+TEST(QuestionsOfACampus, NumbersAreWrittenAsPeopleReadThem) {
+  TaskAnswer answer{{{"change", "m", ""}}, {}};
+  for (const double value : {-0.00001, 0.0003, 1234567.5, -2.25}) answer.rows.push_back({{value}, {}});
+  EXPECT_EQ(answerText(CampusMap::shared().map(), answer, AnswerFormat::Csv),
+            "change\r\n0\r\n0.0003\r\n1234567.5\r\n-2.25\r\n");
+}
+
 TEST(QuestionsOfACampus, AnObjectsRowStandsWhereTheMapSaysItIs) {
   const MapReader& map = CampusMap::shared().map();
   const std::vector<Task> tasks = allTasks();

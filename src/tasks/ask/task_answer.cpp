@@ -21,12 +21,16 @@ using AnswerJson = nlohmann::ordered_json;
 
 double roundedCell(double value) {
   constexpr double per_unit = 1e4;
-  return std::round(value * per_unit) / per_unit;
+  return std::round(value * per_unit) / per_unit + 0.0;  // + 0.0: -0 becomes 0
 }
 
 std::string numberText(double value) {
   std::array<char, 64> text{};
-  const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), roundedCell(value));
+  const double rounded = roundedCell(value);
+  const bool is_short = std::abs(rounded) < 1e15;  // people read 0.0003, not 3e-04
+  const auto [end, error] =
+      is_short ? std::to_chars(text.data(), text.data() + text.size(), rounded, std::chars_format::fixed)
+               : std::to_chars(text.data(), text.data() + text.size(), rounded);
   return error == std::errc() ? std::string(text.data(), end) : std::string();
 }
 
