@@ -16,7 +16,6 @@ namespace cluxel::mapping::tables {
 /// changes; "ways": what the facts about ways followed from.
 inline constexpr std::string_view kMeta = "meta";
 inline constexpr std::string_view kTilesKey = "tiles";          ///< in kMeta: the tiles of the map
-inline constexpr std::string_view kTexts = "texts";             ///< "ontology/0" ...: the inputs' texts
 inline constexpr std::string_view kScans = "scans";             ///< scan id → description
 inline constexpr std::string_view kScanPoints = "scan_points";  ///< scan id → points in the sensor frame
 /// As kScans, of scans whose points were committed before them.
