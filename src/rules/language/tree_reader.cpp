@@ -22,6 +22,8 @@ constexpr std::array<ChoiceName, 7> kChoices{{{"largest_volume", Choice::Largest
                                               {"most_adjacent", Choice::MostAdjacent},
                                               {"all", Choice::All}}};
 
+constexpr const char* kBesideReject = "'leave' and 'hint' stand beside 'reject': { reject: reason, leave: unknown }";
+
 class TreeReader {
  public:
   TreeReader(Rule& rule, RuleReading& reading) : rule_(rule), reading_(reading), faults_(reading.faults) {}
@@ -40,6 +42,8 @@ class TreeReader {
     std::vector<std::string> given;
     for (const YamlNode& key : node.keys)
       if (std::find(kinds.begin(), kinds.end(), key.text) != kinds.end()) given.push_back(key.text);
+    if (given.empty() && (node.find("leave") != nullptr || node.find("hint") != nullptr))
+      return faults_.error(node.at, "a node that does nothing", kBesideReject);
     if (given.size() != 1) {
       const bool none = given.empty();
       const SourceLocation at = none ? node.at : node.keyNode(given[1])->at;
@@ -59,7 +63,8 @@ class TreeReader {
     for (const YamlNode& key : node.keys) {
       const bool other = std::find(others.begin(), others.end(), key.text) != others.end();
       if (other && std::find(allowed.begin(), allowed.end(), key.text) == allowed.end())
-        faults_.error(key.at, "'" + key.text + "' has no meaning in this node");
+        faults_.error(key.at, "'" + key.text + "' has no meaning in this node",
+                      key.text == "leave" || key.text == "hint" ? kBesideReject : "");
     }
   }
 
