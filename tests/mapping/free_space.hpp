@@ -16,9 +16,9 @@ inline void leaveFree(const std::filesystem::path& map, std::size_t bytes) {
   for (const bool is_there : {true, false}) {
     rdf::WriteTransaction transaction = environment->write();
     if (is_there)
-      transaction.putBlock(tables::kTexts, "much", std::string(bytes, 'x'));
+      transaction.putBlock(tables::kMeta, "much", std::string(bytes, 'x'));
     else
-      transaction.eraseBlock(tables::kTexts, "much");
+      transaction.eraseBlock(tables::kMeta, "much");
     transaction.commit();
   }
 }
