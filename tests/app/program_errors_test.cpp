@@ -67,19 +67,28 @@ TEST_F(Program, ANamedPipeInPlaceOfAMapIsExitCodeFive) {
 }
 
 TEST_F(Program, AnyOtherInputThatIsNotThereIsExitCodeFourInEveryCommand) {
-  for (const std::string& arguments : std::vector<std::string>{
-           "info absent-input", "build absent-input -o " + fresh(),
-           "build " + campus() + " -o " + fresh() + " --poses absent-input",
-           "build " + campus() + " -o " + fresh() + " --model absent-input",
-           "build " + campus() + " -o " + fresh() + " --rules absent-input",
-           "build " + campus() + " -o " + fresh() + " --sparql-rules absent-input",
-           "build " + campus() + " -o " + fresh() + " --ontology absent-input", "query absent-input.ttl -e 'ASK {}'",
-           "query " + map() + " absent-input.rq", "update " + map() + " absent-input.ru",
-           "evaluate " + map() + " --truth absent-input", "rules check absent-input",
-           "rules check --ontology absent-input", "rules test absent-input", "rules try " + map() + " absent-input",
-           "rules diff " + map() + " outdoor.rules.yaml absent-input",
-           "train absent-input --truth campus -o " + fresh(),
-           "train " + campus() + " --truth absent-input -o " + fresh()}) {
+  for (const std::string& arguments :
+       std::vector<std::string>{"info absent-input",
+                                "build absent-input -o " + fresh(),
+                                "build " + campus() + " -o " + fresh() + " --poses absent-input",
+                                "build " + campus() + " -o " + fresh() + " --model absent-input",
+                                "build " + campus() + " -o " + fresh() + " --rules absent-input",
+                                "build " + campus() + " -o " + fresh() + " --sparql-rules absent-input",
+                                "build " + campus() + " -o " + fresh() + " --ontology absent-input",
+                                "query absent-input.ttl -e 'ASK {}'",
+                                "query " + map() + " absent-input.rq",
+                                "update " + map() + " absent-input.ru",
+                                "evaluate " + map() + " --truth absent-input",
+                                "rules check absent-input",
+                                "rules check --ontology absent-input",
+                                "rules test absent-input",
+                                "rules try " + map() + " absent-input",
+                                "rules diff " + map() + " outdoor.rules.yaml absent-input",
+                                "inventory " + map() + " --streets absent-input.geojson",
+                                "inventory " + map() + " --register absent-input.csv",
+                                "search " + map() + " --for Tree --from 0,0 --places absent-input.ttl",
+                                "train absent-input --truth campus -o " + fresh(),
+                                "train " + campus() + " --truth absent-input -o " + fresh()}) {
     SCOPED_TRACE(arguments);
     expectError(run(arguments), 4, "absent-input");
     EXPECT_FALSE(fs::exists(fresh()));
@@ -227,8 +236,11 @@ TEST_F(Program, WrongChoicesOfOneCommandAreErrorsOfUsage) {
   expectError(run("export " + map()), 2, "--format");
   expectError(run("query " + map() + " objects -e 'ASK {}'"), 2, "not both");
   expectError(run("query " + map() + " objects --param far=1"), 2, "has no parameters");
-  expectError(run("query " + map() + " near_point --param radius=far"), 2, "a number is expected [m]");
+  expectError(run("query " + map() + " near_point --param radius=far"), 2, "a number from 0 is expected [m]");
   expectError(run("query " + map() + " near_point --param raduis=3"), 2, "did you mean 'radius'?");
+  expectError(run("query " + map() + " near_point --param radius=-3"), 2, "a number from 0 is expected [m]");
+  expectError(run("ask " + map() + " near_point radius=-3"), 2, "write a number [m] from 0, not '-3'");
+  expectError(run("ask " + map() + " uncertain_objects below=1.5"), 2, "from 0 to 1");
   expectError(run("query " + map() + " objects --format turtle"), 2, "choose table");
   expectError(run("explain " + map() + " abc"), 2, "four digits");
   expectError(run("export " + map() + " --format geojson"), 2, "hint: --local");
@@ -250,6 +262,7 @@ TEST_F(Program, ErrorsOfTheLibraryAreShownWithTheOptionThatHelps) {
   expectError(run("build " + campus() + " -o " + map()), 2, "is a finished map\n  hint: --force replaces it");
   expectError(query("three.ttl", "SELECT * { SERVICE <https://e.org/> { ?s ?p ?o } }"), 4, "hint: --service IRI=FILE");
   expectError(run("query " + map() + " near_point --param raduis=3"), 2, "hint: --param NAME=VALUE");
+  expectError(run("ask " + map() + " changes"), 2, "since=TIME");
 }
 
 TEST_F(Program, AThingThatIsNotInTheMapIsExitCodeThree) {
@@ -262,6 +275,7 @@ TEST_F(Program, OutputThatCannotBeWrittenIsExitCodeFive) {
   const std::string nowhere = path("nowhere/out").string();
   expectError(run("export " + map() + " --canonical -o " + nowhere), 5, "nowhere/out");
   expectError(run("compact " + map() + " -o " + nowhere), 5, "nowhere/out");
+  expectError(run("compact " + map() + " -o " + path("three.ttl").string()), 5, "is there already");
   expectError(run("build " + campus() + " -o " + nowhere + ".clx"), 5, "nowhere/out.clx");
   expectError(run("build " + campus() + " -o " + campus()), 5, "is a folder");
   expectError(run("train " + campus() + " --truth campus -o " + map()), 5, "is a file");

@@ -155,6 +155,38 @@ TEST_F(Program, InfoTellsOfScansWhatIsInThem) {
   EXPECT_EQ(labelled, info.at("points"));
 }
 
+TEST_F(Program, InfoCountsPointsWithoutALabelApart) {
+  const std::string head =
+      "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\n";
+  writeFile(path("labels.ply"), head + "property int label\nend_header\n1 2 3 -1\n4 5 6 7\n");
+  EXPECT_NE(run("info " + path("labels.ply").string()).out.find("labels: 7:1 none:1\n"), std::string::npos);
+  const Json labels = Json::parse(run("info --json " + path("labels.ply").string()).out).at("labels");
+  EXPECT_EQ(labels, (Json{{"7", 1}, {"none", 1}}));
+  writeFile(path("labels.txt"), "1 2 3 -1 1\n4 5 6 7 1\n");
+  EXPECT_EQ(Json::parse(run("info --json " + path("labels.txt").string()).out).at("labels"), labels);
+}
+
+/// What `build` refuses later is no sound scan to `info`.
+TEST_F(Program, InfoAndBuildHaveOneLimitOfCoordinates) {
+  const std::string out = path("far.clx").string();
+  const std::vector<std::pair<std::string, std::string>> far{
+      {"20000000 0 0", ""}, {"0 0 20001", ""}, {"0 0 30000000", " --units mm"}, {"0 30000 0", " --up y"}};
+  for (const auto& [point, options] : far) {
+    writeFile(path("far.xyz"), point + "\n" + point + "\n");
+    for (const std::string& command :
+         {"info " + path("far.xyz").string(), "build " + path("far.xyz").string() + " -o " + out})
+      expectError(run(command + options), 4, "point 0 lies outside the map's range");
+  }
+  writeFile(path("far.xyz"), "5400000000 400000000 19000000\n5400000001 400000000 19000000\n");  // UTM in millimetres
+  EXPECT_EQ(run("info --units mm " + path("far.xyz").string()).code, 0);
+}
+
+TEST_F(Program, ANoteBeginsOnce) {
+  const Outcome asked = run("ask " + path("map.clx").string() + " count_by_class --why");
+  EXPECT_NE(asked.err.find("note: the task count_by_class gives no reasons"), std::string::npos) << asked.err;
+  EXPECT_EQ(asked.err.find("note: note:"), std::string::npos);
+}
+
 TEST_F(Program, DoctorFindsAByteThatChangedAndNamesNothingInAWholeMap) {
   const Json whole = Json::parse(run("doctor --json " + path("map.clx").string()).out);
   EXPECT_GT(whole.at("blocks"), 10);
@@ -189,7 +221,7 @@ TEST_F(Program, CompactInPlaceKeepsTheMapAndLeavesNothingBeside) {
     const std::string name = entry.path().filename().string();
     EXPECT_TRUE(name == "map.clx" || name == "map.clx-lock") << name;
   }
-  expectError(run("compact " + map.string() + " -o " + map.string()), 2, "is there already");
+  expectError(run("compact " + map.string() + " -o " + map.string()), 5, "is there already");
 }
 
 TEST_F(Program, DoctorAndExportAgreeThatTheMapIsWhole) {

@@ -75,6 +75,9 @@ TEST_F(RegisterCommand, CheckIsExitCodeOneForWrongPosesAndZeroForRefinedOnes) {
   const Outcome right = run("register --check " + path("refined.yaml").string());
   EXPECT_EQ(right.code, 0) << right.out;
   EXPECT_NE(right.out.find("worst residual"), std::string::npos);
+  const Outcome strict = run("register --check --max-residual 0.0001 " + path("refined.yaml").string());
+  EXPECT_EQ(strict.code, 1);
+  EXPECT_NE(strict.out.find(": above --max-residual 0.0001 m"), std::string::npos) << strict.out;
   EXPECT_EQ(run("register --check --max-residual 5 " + path("drive").string()).code, 0);
 }
 

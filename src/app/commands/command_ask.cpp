@@ -68,7 +68,7 @@ ExitCode ask(const AskArguments& arguments, Session& session) {
   noteUnfinished(arguments.map, map.isFinished(), arguments.allow_unfinished, session);
   tasks::TaskAnswer answer = task.run({map, arguments.why, {}}, values);
   if (answer.columns.empty()) answer.columns = task.columns;
-  if (arguments.why && !task.has_reasons) session.console.note("note: the task " + task.name + " gives no reasons");
+  if (arguments.why && !task.has_reasons) session.console.note("the task " + task.name + " gives no reasons");
   return printAnswer(map, answer, arguments.output, session);
 }
 
@@ -147,14 +147,10 @@ void addInventory(CLI::App& app, Session& session) {
   command->add_option("map", options->map, "a map")->required();
   command->add_option("--kind", options->kinds,
                       "a class, ParkingRow or Sidewalk; default: street furniture, trees and both of these");
-  command
-      ->add_option("--streets", options->streets,
-                   "GeoJSON lines with names: each entry gets the name of its nearest street")
-      ->check(CLI::ExistingFile);
-  command
-      ->add_option("--register", options->register_file,
-                   "CSV or GeoJSON of the objects that should be there: compare the map with it")
-      ->check(CLI::ExistingFile);
+  command->add_option("--streets", options->streets,
+                      "GeoJSON lines with names: each entry gets the name of its nearest street");
+  command->add_option("--register", options->register_file,
+                      "CSV or GeoJSON of the objects that should be there: compare the map with it");
   command
       ->add_option("--within", options->comparison.within_m, "largest distance between an entry and its object [m, 3]")
       ->check(above0());

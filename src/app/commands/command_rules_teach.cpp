@@ -41,11 +41,11 @@ void refuseToReplace(const TeachOptions& options, const mapping::MapReader& map)
                 options.out.string() + ": name the new rule file *" + std::string(kRuleEnding));
   for (const fs::path& file : {options.out, testFileOf(options.out)})
     if (fs::exists(file))
-      throw Error(ErrorKind::InvalidArgument,
+      throw Error(ErrorKind::StoreUnavailable,
                   file.string() + " exists, and lessons are not added to a file: name another, or apply it first");
   for (const auto& [file, text] : includedFiles(map, options.out.parent_path()))
     if (fs::exists(file) && readFile(file) != text)
-      throw Error(ErrorKind::InvalidArgument,
+      throw Error(ErrorKind::StoreUnavailable,
                   file.string() +
                       " differs from the map's own rules, which the new file includes: name "
                       "a file in another folder");

@@ -17,7 +17,7 @@ struct UpkeepOptions {
 ExitCode compact(const UpkeepOptions& options, const Session& session) {
   std::error_code ignored;
   if (!options.output.empty() && fs::exists(options.output, ignored))
-    throw Error(ErrorKind::InvalidArgument,
+    throw Error(ErrorKind::StoreUnavailable,
                 options.output.string() + ": is there already; choose another name or remove it");
   const auto before = fs::file_size(options.map, ignored);
   if (options.output.empty())

@@ -186,10 +186,8 @@ void addSearch(CLI::App& app, Session& session) {
   const CLI::App* learn = addSearchLearn(*command, session);
   command->add_option("map", options->map, "a map");
   command->add_option("--for", request->class_name, "the class to look for");
-  command
-      ->add_option("--places", request->places,
-                   "file of usual places that `search learn` wrote; default: those of the ontology")
-      ->check(CLI::ExistingFile);
+  command->add_option("--places", request->places,
+                      "file of usual places that `search learn` wrote; default: those of the ontology");
   command->add_flag("--unobserved", options->request.params.crosses_unobserved,
                     "the walk may cross ground that was not observed");
   command->add_option("--from", request->from, "start: X,Y or an object; default: where the last scan was taken");
