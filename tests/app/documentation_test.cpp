@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The man page and shell completion hold every command, and the tools that read them accept them.
+#include <map>
+#include <regex>
 #include <sstream>
 
 #include "app/program_fixture.hpp"
@@ -57,6 +59,70 @@ TEST_F(Documentation, TheManPageHoldsEveryCommandAndManReadsItWithoutWarnings) {
   EXPECT_EQ(shown.code, 0);
   EXPECT_EQ(shown.err, "");
   EXPECT_NE(shown.out.find("--batch-points"), std::string::npos);
+}
+
+/// The options that a command's help lists, each with its short form or an empty text.
+std::map<std::string, std::string> optionsIn(const std::string& help) {
+  static const std::regex kOption("^ +(-[a-z])?,?(--[a-z][a-z0-9-]*)");
+  std::map<std::string, std::string> options;
+  std::istringstream lines(help);
+  std::smatch found;
+  for (std::string line; std::getline(lines, line);)
+    if (std::regex_search(line, found, kOption)) options[found[2]] = found[1];
+  return options;
+}
+
+/// The text of docs/cli.md before its first section and in the section whose heading names the command.
+class CommandLineDocument {
+ public:
+  CommandLineDocument() {
+    std::istringstream lines(readFile(test::sourceFolder() / "docs" / "cli.md"));
+    for (std::string line; std::getline(lines, line);) {
+      if (line.starts_with("## ")) sections_.push_back({line, ""});
+      (sections_.empty() ? intro_ : sections_.back().text) += line + '\n';
+    }
+  }
+  bool hasSection(const std::string& command) const { return !textOf(command).empty(); }
+  /// An option may be written in its short form, and those of many commands stand before the sections.
+  bool names(const std::string& command, const std::string& option, const std::string& short_form) const {
+    return hasWord(textOf(command), option) || hasWord(intro_, option) ||
+           (!short_form.empty() && hasWord(textOf(command), short_form));
+  }
+
+ private:
+  struct Section {
+    std::string heading, text;
+  };
+  std::string textOf(const std::string& command) const {
+    for (const Section& section : sections_)
+      if (std::regex_search(section.heading, std::regex("(^## |, )" + command + "( |,|$)"))) return section.text;
+    return {};
+  }
+  static bool hasWord(const std::string& text, const std::string& word) {
+    return std::regex_search(text, std::regex("(^|[^-a-z])" + word + "($|[^-a-z])"));
+  }
+
+  std::string intro_;
+  std::vector<Section> sections_;
+};
+
+TEST_F(Documentation, NamesEachOptionInTheSectionOfItsCommand) {
+  const CommandLineDocument document;
+  std::vector<std::pair<std::string, std::string>> commands;  // with the heading of their section
+  for (const std::string& command : kCommands)
+    if (command != "rules") commands.emplace_back(command, command);
+  for (const char* command : {"check", "test", "apply", "try", "diff", "fit", "teach", "doc"})
+    commands.emplace_back("rules " + std::string(command), "rules " + std::string(command));
+  commands.emplace_back("search learn", "search");
+  for (const auto& [command, heading] : commands) {
+    EXPECT_TRUE(document.hasSection(heading)) << "docs/cli.md has no section for " << command;
+    const auto options = optionsIn(run(command + " --help").out);
+    EXPECT_TRUE(options.contains("--help")) << command;
+    for (const auto& [option, short_form] : options) {
+      const bool is_named = option == "--help" || document.names(heading, option, short_form);
+      EXPECT_TRUE(is_named) << "docs/cli.md, " << command << ": " << option;
+    }
+  }
 }
 
 TEST_F(Documentation, TheScriptsAreAcceptedByTheirShells) {
