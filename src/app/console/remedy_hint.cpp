@@ -37,7 +37,7 @@ const char* hintFor(Remedy remedy) {
     case Remedy::MergeMaps:
       return "'cluxel merge MAP MAP -o MAP' makes one map of several";
     case Remedy::NameTime:
-      return "--since TIME (of `ask`: since=TIME) tells from when on scans count as later";
+      return "--since TIME tells from when on scans count as later; `ask` takes since=TIME";
   }
   return "";
 }
