@@ -47,9 +47,9 @@ scan::Scan scanOf(const Cloud& cloud) {
 class RangeView : public ScanView {
  public:
   explicit RangeView(std::string cloud) : cloud_(std::move(cloud)) {}
-  void look(const perception::RayBundle& bundle, unsigned threads) override {
+  void look(const perception::ScanRays& rays, unsigned threads) override {
     EXPECT_GE(threads, 1U);
-    range_m_ = bundle.maxRange_m();
+    range_m_ = rays.bundles().front().maxRange_m();
     // Scans of higher numbers are ready first, as far as they run at the same time.
     std::this_thread::sleep_for(std::chrono::microseconds(50 * (kClouds - std::stoi(cloud_))));
   }

@@ -8,6 +8,7 @@
 #include <set>
 #include <utility>
 
+#include "base/utc_time.hpp"
 #include "cluxel/error.hpp"
 
 namespace cluxel::mapping {
@@ -40,7 +41,7 @@ class NoteList : public ProgressSink {
 };
 
 Placement placementOf(const scan::ScanFile& file) {
-  return {file.has_pose, file.T_map_sensor.matrix(), file.time_s};
+  return {file.has_pose, file.T_map_sensor.matrix(), toMicroseconds(file.time_s)};
 }
 
 }  // namespace

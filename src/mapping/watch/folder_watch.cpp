@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/utc_time.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/build/work_file.hpp"
 #include "mapping/change/map_compaction.hpp"
@@ -225,7 +226,7 @@ class Watch {
       if (scan == nullptr || !scan->is_in_map || !to_retime_.contains(*scan->id)) continue;
       if (const auto seen = now.seen.find(file.path); seen == now.seen.end() || seen->second != scan->seen) continue;
       Times& times = told[*scan->id];
-      times.latest_s = std::max(times.latest_s, file.time_s);
+      times.latest_s = std::max(times.latest_s, toMicroseconds(file.time_s));
       times.files.push_back(i);
     }
     std::vector<std::size_t> others;

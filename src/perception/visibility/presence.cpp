@@ -104,6 +104,11 @@ std::optional<Presence> presenceOf(std::span<const ScanVotes> votes, const Visib
   return presence;
 }
 
+bool showPresence(std::span<const ScanVotes> votes, const Visibility& thing, const PresenceParams& params) {
+  const auto likeliest = likeliestOf(votes, thing, params);
+  return likeliest && likeliest->log_odds >= params.decided;
+}
+
 std::string_view nameOf(PresenceState state) {
   constexpr std::array<std::string_view, 3> kNames{"present", "absent", "not observed"};
   return kNames[static_cast<std::size_t>(state)];

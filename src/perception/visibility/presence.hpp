@@ -66,6 +66,9 @@ bool showAbsence(std::span<const ScanVotes> votes, const Visibility& thing, cons
 std::optional<Presence> presenceOf(std::span<const ScanVotes> votes, const Visibility& thing,
                                    const PresenceParams& params);
 
+/// Whether scans in a row show that the thing was there: their log-odds are `decided` or more.
+bool showPresence(std::span<const ScanVotes> votes, const Visibility& thing, const PresenceParams& params);
+
 /// The state of a thing at the end of some scans: absent exactly when the place was seen through after the last
 /// interval in which it was there.
 enum class PresenceState : std::uint8_t { Present, Absent, NotObserved };

@@ -108,10 +108,11 @@ class Things {
     things_.push_back(std::move(thing));
   }
 
-  /// What was found of a part of it is part of this change.
+  /// Nothing when its cluxels tell a change.
   void addWhole(const ObjectBack& back) {
-    std::erase_if(things_, [&](const ChangedThing& thing) { return thing.object == back.object; });
-    things_.push_back({back.cluxels, back.object, false, back.box});
+    const auto isOfIt = [&](const ChangedThing& thing) { return thing.object == back.object; };
+    if (std::none_of(things_.begin(), things_.end(), isOfIt))
+      things_.push_back({back.cluxels, back.object, false, back.box});
   }
 
   /// Things of one object are parts of it.

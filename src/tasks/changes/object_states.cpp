@@ -18,9 +18,9 @@ ObjectStates statesOf(std::uint32_t object, std::span<const perception::ScanVote
   states.object = object;
   states.before = stateAfter(before, thing, kParams), states.after = stateAfter(after, thing, kParams);
   if (states.before == PresenceState::Present && states.after == PresenceState::Absent)
-    states.was_away = presenceOf(after, thing, kParams).has_value();
+    states.was_away = showPresence(after, thing, kParams);
   if (states.before == PresenceState::Absent && states.after == PresenceState::Present)
-    states.was_away = presenceOf(before, thing, kParams).has_value();
+    states.was_away = showPresence(before, thing, kParams);
   states.log_odds_before = logOddsOfPresence(before, thing.share_of_hits, kParams);
   states.log_odds_after = logOddsOfPresence(after, thing.share_of_hits, kParams);
   return states;
