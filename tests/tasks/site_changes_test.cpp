@@ -303,7 +303,7 @@ TEST_F(SiteChangesTest, OneLaterScanDoesNotTakeCrownsApart) {
 
 TEST(StatesOfParts, AreThoseThatTheWholeDoesNotTell) {
   using perception::PresenceState;
-  const auto thing = [](std::optional<std::uint32_t> object) { return ChangedThing{{1, 2}, object, true, {}}; };
+  const auto thing = [](std::optional<std::uint32_t> object) { return ChangedThing{{1, 2}, object, true, {}, false}; };
   SiteChanges changes;
   changes.states = {{0, PresenceState::Present, PresenceState::Present},
                     {1, PresenceState::Present, PresenceState::Absent},

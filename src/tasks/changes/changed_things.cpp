@@ -94,7 +94,7 @@ class Things {
   /// Names the thing after the object that most of its cluxels belong to.
   void addThing(std::vector<std::uint32_t> cluxels, const Eigen::AlignedBox3d& box) {
     if (cluxels.empty()) return;
-    ChangedThing thing{std::move(cluxels), std::nullopt, false, box};
+    ChangedThing thing{std::move(cluxels), std::nullopt, false, box, false};
     std::map<std::uint32_t, std::size_t> votes;
     for (const std::uint32_t cluxel : thing.cluxels) ++votes[object_of_cluxel_.at(cluxel)];
     const auto most =
@@ -112,7 +112,7 @@ class Things {
   void addWhole(const ObjectBack& back) {
     const auto isOfIt = [&](const ChangedThing& thing) { return thing.object == back.object; };
     if (std::none_of(things_.begin(), things_.end(), isOfIt))
-      things_.push_back({back.cluxels, back.object, false, back.box});
+      things_.push_back({back.cluxels, back.object, false, back.box, false});
   }
 
   /// Things of one object are parts of it.
@@ -120,8 +120,10 @@ class Things {
     std::map<std::uint32_t, std::size_t> things_of_object;
     for (const ChangedThing& thing : things_)
       if (thing.object) ++things_of_object[*thing.object];
-    for (ChangedThing& thing : things_)
-      thing.is_part = thing.is_part || (thing.object && things_of_object[*thing.object] > 1);
+    for (ChangedThing& thing : things_) {
+      thing.has_more_parts = thing.object && things_of_object[*thing.object] > 1;
+      thing.is_part = thing.is_part || thing.has_more_parts;
+    }
   }
 
   /// Whether the whole object is absent at the other time. An object without a state counts as such.

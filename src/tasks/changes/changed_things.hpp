@@ -17,7 +17,8 @@ struct ChangedThing {
   std::optional<std::uint32_t> object;  ///< that most of them belong to; absent when most belong to none
   /// That object is not absent as a whole, more of it stays than changed, or other parts of it changed alike.
   bool is_part = false;
-  Eigen::AlignedBox3d box;  ///< [m, map]
+  Eigen::AlignedBox3d box{};    ///< [m, map]
+  bool has_more_parts = false;  ///< other changes of the same kind are of the same object
 };
 
 /// What vanished and what appeared.

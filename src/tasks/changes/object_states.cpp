@@ -8,6 +8,17 @@ namespace cluxel::tasks {
 
 using perception::PresenceState;
 
+namespace {
+
+bool leftOnALaterVisit(std::span<const perception::ScanVotes> votes, const perception::Visibility& thing,
+                       const perception::PresenceParams& params) {
+  if (!showPresence(votes, thing, params)) return false;
+  const auto presence = presenceOf(votes, thing, params);
+  return presence && presence->seen_through_s && *presence->seen_through_s - presence->last_seen_s > kPauseOfVisits_s;
+}
+
+}  // namespace
+
 ObjectStates statesOf(std::uint32_t object, std::span<const perception::ScanVotes> votes, double since_s) {
   constexpr perception::PresenceParams kParams;
   const auto later = std::find_if(votes.begin(), votes.end(), [&](const auto& vote) { return vote.time_s >= since_s; });
@@ -18,9 +29,9 @@ ObjectStates statesOf(std::uint32_t object, std::span<const perception::ScanVote
   states.object = object;
   states.before = stateAfter(before, thing, kParams), states.after = stateAfter(after, thing, kParams);
   if (states.before == PresenceState::Present && states.after == PresenceState::Absent)
-    states.was_away = showPresence(after, thing, kParams);
+    states.was_away = leftOnALaterVisit(after, thing, kParams);
   if (states.before == PresenceState::Absent && states.after == PresenceState::Present)
-    states.was_away = showPresence(before, thing, kParams);
+    states.was_away = leftOnALaterVisit(before, thing, kParams);
   states.log_odds_before = logOddsOfPresence(before, thing.share_of_hits, kParams);
   states.log_odds_after = logOddsOfPresence(after, thing.share_of_hits, kParams);
   return states;

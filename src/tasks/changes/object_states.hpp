@@ -10,12 +10,17 @@
 
 namespace cluxel::tasks {
 
+/// Between two visits no scan is taken for longer than this.
+inline constexpr double kPauseOfVisits_s = 1800;
+
 struct ObjectStates {
   std::uint32_t object = 0;  ///< number in MapReader::objects()
   perception::PresenceState before = perception::PresenceState::NotObserved,
                             after = perception::PresenceState::NotObserved;
   double log_odds_before = 0, log_odds_after = 0;  ///< of "there"
-  bool was_away = false;  ///< present at the end of one time, absent at that of the other, but there for a while then
+  /// Present at the end of one time and absent at that of the other, though it was surely there on an earlier visit of
+  /// that other time. Scans of one visit that see through a thin thing do not tell that it left.
+  bool was_away = false;
   Eigen::AlignedBox3d box{};                         ///< of its cluxels [m, map]
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();  ///< of its upright box [m, map]
 };

@@ -24,7 +24,6 @@ namespace {
 using perception::PresenceState;
 using ChangeJson = nlohmann::ordered_json;
 
-constexpr double kPause_s = 1800;
 constexpr double kMaxMove_m = 10;
 constexpr double kSizeTolerance = 0.3;  ///< of a move, as a share of each side
 
@@ -69,10 +68,9 @@ bool areOfOneSize(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return true;
 }
 
-/// Whether what vanished may be what appeared: things of one class and nearly one size, both whole or both parts of
-/// different objects.
+/// Whether what vanished may be what appeared: two objects, or parts of such, of one class and nearly one size.
 bool mayBeOne(const mapping::MapReader& map, const ChangedThing& gone, const ChangedThing& come) {
-  return gone.object && come.object && gone.object != come.object && gone.is_part == come.is_part &&
+  return gone.object && come.object && gone.object != come.object && !gone.has_more_parts && !come.has_more_parts &&
          areOfOneSize(gone.box.sizes(), come.box.sizes()) && map.classOf(*gone.object) == map.classOf(*come.object);
 }
 
@@ -135,7 +133,7 @@ std::string_view nameOf(SiteChange::Kind kind) {
 std::vector<Visit> visitsOf(const std::vector<mapping::Cloud>& clouds) {
   std::vector<Visit> visits;
   for (const double time_s : scanTimes(clouds)) {
-    if (visits.empty() || time_s - visits.back().end_s > kPause_s) visits.push_back({time_s, time_s, 0});
+    if (visits.empty() || time_s - visits.back().end_s > kPauseOfVisits_s) visits.push_back({time_s, time_s, 0});
     visits.back().end_s = time_s;
     ++visits.back().scans;
   }
