@@ -91,7 +91,8 @@ struct MapSummary {
 ///
 /// Callbacks (ProgressSink and `poll`) may call all const functions, also of the map that is being written: they see
 /// the last commit. A function that writes a map throws Error (InvalidArgument) in a callback of one that writes the
-/// same map, because each would wait for the other.
+/// same map, because each would wait for the other, and StoreUnavailable for another map that a thread is writing
+/// through the same object.
 ///
 /// All functions throw Error. StoreUnavailable: the file is not a map, or cannot be read or written; FaultyInput (as
 /// InputError with file, line and column): scans, rules, ontology, model, query or update; NotFound: no such name;

@@ -37,6 +37,10 @@ WritingCall::WritingCall(const fs::path& file, ProgressSink& caller) : file_(wit
                       "the map; write it when the call has ended");
 }
 
+bool WritingCall::isInCallback() {
+  return innermost_callback != nullptr;
+}
+
 template <typename Callback>
 void WritingCall::run(const Callback& callback) {
   struct Running {

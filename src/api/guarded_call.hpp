@@ -24,6 +24,8 @@ class WritingCall : public ProgressSink {
   void progress(std::string_view stage, std::size_t done, std::size_t total) override;
   void note(std::string_view message) override;
   void poll(const std::function<void()>& callback);
+  /// Whether the call was made in a callback of a call that writes another map.
+  static bool isInCallback();
   /// Whether what ends the call comes from a callback.
   bool hasThrown() const { return has_thrown_; }
   const std::filesystem::path& file() const { return file_; }

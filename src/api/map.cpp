@@ -49,7 +49,13 @@ struct Map::Impl {
     WritingCall call(file, caller);
     return guarded(
         [&] {
-          const std::lock_guard lock(writing_mutex);
+          std::unique_lock lock(writing_mutex, std::defer_lock);
+          // Two calls whose callbacks write each other's map would wait for each other.
+          if (!call.isInCallback())
+            lock.lock();
+          else if (!lock.try_lock())
+            throw Error(ErrorKind::StoreUnavailable,
+                        file.string() + ": another thread is writing this map; callbacks do not wait for it");
           forget();  // the pages that it keeps can be used again once there is a newer commit
           return write(call);
         },

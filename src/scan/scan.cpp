@@ -52,6 +52,11 @@ void requireInMapRange(const Scan& scan) {
   const bool all_in_range = std::all_of(corners.begin(), corners.end(), [&](auto corner) {
     return isInMapRange(toMap(scan.T_map_sensor, box.corner(corner)));
   });
+  for (std::size_t i = 0; i < scan.points.origin.size(); ++i)
+    if (!isInMapRange(toMap(scan.T_map_sensor, scan.points.origin[i])))
+      throw InputError({.file = scan.source},
+                       "the ray of point " + std::to_string(i) + " starts outside the map's range",
+                       "origins of rays are in the frame of the points; coordinates may reach 10000 km, heights 20 km");
   if (all_in_range) return;
   for (std::size_t i = 0; i < scan.points.size(); ++i)
     if (!isInMapRange(toMap(scan.T_map_sensor, {scan.points.x[i], scan.points.y[i], scan.points.z[i]})))

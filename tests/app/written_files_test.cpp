@@ -41,5 +41,28 @@ TEST_F(Program, NoOutputReplacesAMap) {
   EXPECT_FALSE(fs::exists(path("of_a_map_site.pgm"))) << "an image without its frame";
 }
 
+TEST_F(Program, AnExportDoesNotReplaceAMap) {
+  const std::string map = path("map.clx").string(), before = readFile(map);
+  expectError(run("export " + map + " --format ply -o " + map), 5, "is a map");
+  expectError(run("export " + map + " --canonical -o " + map), 5, "name another file");
+  EXPECT_TRUE(readFile(map) == before);
+  EXPECT_EQ(run("export " + map + " -o " + path("again.ply").string()).code, 0);
+  EXPECT_EQ(run("export " + map + " -o " + path("again.ply").string()).code, 0) << "another export may be replaced";
+}
+
+TEST_F(Program, AReportDoesNotReplaceTheTestsThatItStandsBefore) {
+  const fs::path tests = path("mine.rules-test.yaml");
+  writeFile(tests, "apiVersion: cluxel.rules.test/v1\n");
+  expectError(run("rules test --junit " + tests.string()), 2, "name it *.xml");
+  EXPECT_EQ(readFile(tests), "apiVersion: cluxel.rules.test/v1\n");
+}
+
+TEST_F(Program, FiguresAreOfMapsAndReplaceNone) {
+  const std::string own = path("map.clx").string();
+  expectError(run("info " + path("campus").string() + " --html " + path("f.html").string()), 2, "--html needs a map");
+  expectError(run("info " + own + " --html " + own), 5, "name another file");
+  EXPECT_EQ(run("info " + own).code, 0) << "the map is as it was";
+}
+
 }  // namespace
 }  // namespace cluxel::app

@@ -109,6 +109,24 @@ TEST_F(WatchedChanges, IncludeScansWhosePathsAreSpeltOtherwise) {
   EXPECT_TRUE(canonicalText(map()) == builtOfFolder());
 }
 
+TEST_F(WatchedChanges, KeepAScanWhosePathIsSpeltOtherwiseUntilTheMapHasAnother) {
+  arrive(0);
+  arrive(1);
+  bool is_respelt = false;
+  int looks_after = 0;
+  watchUntil([&] {
+    if (scans_in_map == 2 && !std::exchange(is_respelt, true)) {
+      const std::string path = "  - path: ./";
+      writeFile(scans() / "manifest.yaml",
+                "scans:\n" + path + fileOf(0).filename().string() + "\n" + path + fileOf(1).filename().string() + "\n");
+      writeFile(fileOf(0), readFile(campus->files()[0]).substr(0, 2000));
+    }
+    return notes.has("stop0.pcd") && ++looks_after > 5;
+  });
+  EXPECT_FALSE(notes.has("retracted"));
+  EXPECT_EQ(scans_in_map, 2U);
+}
+
 TEST_F(WatchedChanges, TakeTimesThatComeLaterAndAreCorrected) {
   arrive(0);
   arrive(1);

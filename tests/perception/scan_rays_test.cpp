@@ -238,7 +238,7 @@ TEST(ScanRays, OfALaserThatMovesTellTheSameInAnyOrder) {
   const ScanRays taking_turns(scanOf(rays));
   std::vector<Ray> in_turn = rays;
   std::stable_sort(in_turn.begin(), in_turn.end(),
-                   [](const Ray& a, const Ray& b) { return a.start.x() < b.start.x(); });
+                   [](const Ray& a, const Ray& b) { return a.start.x() > b.start.x(); });
   const ScanRays one_after_the_other(scanOf(in_turn));
   ASSERT_EQ(taking_turns.bundles().size(), 12U);
   std::array<int, 4> seen{};
@@ -260,6 +260,30 @@ TEST(ScanRays, OfALaserThatMovesTellTheSameInAnyOrder) {
     ++seen[static_cast<std::size_t>(verdict.verdict)];
   }
   for (const int count : seen) EXPECT_GT(count, 20);
+}
+
+TEST(ScanRays, OfALaserThatMovesInShortStepsStartAtTheSamePlacesInAnyOrder) {
+  std::mt19937 random(7);
+  std::vector<Ray> rays;
+  for (int i = 0; i < 4'000; ++i) {
+    const Eigen::Vector3d start(0.009 * (i / 100), 0, 0);
+    rays.push_back({start, start + (2 + 0.001 * i) * randomDirection(random)});
+  }
+  const ScanRays forwards(scanOf(rays));
+  ASSERT_EQ(forwards.bundles().size(), 7U);
+  for (int round = 0; round < 3; ++round) {
+    std::shuffle(rays.begin(), rays.end(), random);
+    const ScanRays shuffled(scanOf(rays));
+    ASSERT_EQ(shuffled.bundles().size(), forwards.bundles().size());
+    for (std::size_t i = 0; i < shuffled.bundles().size(); ++i) {
+      ASSERT_EQ(shuffled.bundles()[i].origin(), forwards.bundles()[i].origin());
+      ASSERT_EQ(shuffled.bundles()[i].maxRange_m(), forwards.bundles()[i].maxRange_m());
+    }
+    for (int i = 0; i < 500; ++i) {
+      const Eigen::Vector3d place = 3 * randomDirection(random);
+      ASSERT_EQ(shuffled.verdictAt(place, {}).verdict, forwards.verdictAt(place, {}).verdict);
+    }
+  }
 }
 
 TEST(ScanRays, OfOneScanTellTogetherWhereverTheyStart) {

@@ -132,7 +132,7 @@ ExitCode checkPoses(const RegisterOptions& options, const scan::ScanSet& set, Se
     const bool has_measured = std::any_of(report.scans.begin(), report.scans.end(),
                                           [](const scan::RefinedScan& scan) { return scan.pairs > 0; });
     if (has_measured)
-      std::printf("worst residual %.3g m: %s --max-residual %g m\n", worst_m,
+      std::printf("worst residual %.6g m: %s --max-residual %g m\n", worst_m,
                   worst_m <= options.max_residual_m ? "within" : "above", options.max_residual_m);
     printNotCompared(report, set);
   }

@@ -125,15 +125,12 @@ class Watch {
   }
 
   bool addFresh(const FolderLook& now, const std::vector<std::size_t>& fresh) {
-    std::vector<fs::path> first_read;
-    for (const std::size_t i : fresh) {
-      const fs::path& path = now.scans->file(i).path;
-      if (!watched_.hasRead(path)) first_read.push_back(path);
-      watched_.noteChanged(path);
-    }
+    for (const std::size_t i : fresh) watched_.noteChanged(now.scans->file(i).path);
     const bool is_added = add(now, fresh, true);
     noteDone(now, fresh);
-    for (const fs::path& path : first_read) notes_.tellReplacedBefore(path, earlier_.takeFrom(path), watched_);
+    for (const std::size_t i : fresh)
+      if (const fs::path& path = now.scans->file(i).path; compared_.insert(plainPath(path)).second)
+        notes_.tellReplacedBefore(path, earlier_.takeFrom(path), watched_);
     return is_added;
   }
 
@@ -204,7 +201,7 @@ class Watch {
       is_built_ = true;
       tell(report.scans, report.scans, report.scans, report.objects);
     } else {
-      if (!is_built_) earlier_ = EarlierScans(storedClouds(readOf(map_)));
+      if (!is_built_) rememberClouds(storedClouds(readOf(map_)));
       is_built_ = true;
       const ChangeReport report = extension_.add(scans);
       given = report.given;
@@ -241,6 +238,11 @@ class Watch {
     return any;
   }
 
+  void rememberClouds(const std::vector<Cloud>& clouds) {
+    earlier_ = EarlierScans(clouds);
+    for (const Cloud& cloud : clouds) clouds_before_.insert(cloud.id);
+  }
+
   /// Removes scans from the map whose files hold other ones now.
   bool retractReplaced() {
     std::vector<scan::ScanId> ids;
@@ -248,11 +250,16 @@ class Watch {
       const rdf::ReadTransaction transaction = readOf(map_);
       for (const scan::ScanId& id : replaced) {
         const std::optional<Cloud> cloud = storedCloud(transaction, id);
-        if (cloud && watched_.hasRead(cloud->source)) ids.push_back(id);
-        if (cloud && !watched_.hasRead(cloud->source))
-          sink_.note(map_.string() + ": cloud " + id.hex() + " stays, because it came from '" + cloud->source +
-                     "', although no file of the folder holds that scan any more");
+        if (!cloud) continue;
+        const bool was_there = clouds_before_.contains(id);
+        if (!was_there && watched_.hasRead(cloud->source))
+          ids.push_back(id);
+        else
+          sink_.note(map_.string() + ": cloud " + id.hex() +
+                     " stays, although no file of the folder holds that scan any " + "more, because " +
+                     (was_there ? "the map had it before the watch began" : "it came from '" + cloud->source + "'"));
       }
+      watched_.forgetReplaced(replaced);
     }
     if (!ids.empty()) {
       extension_.close();
@@ -260,7 +267,6 @@ class Watch {
       sink_.note("scans retracted, because their files hold other scans now: " + std::to_string(ids.size()));
       tell(0, ids.size(), report);
     }
-    watched_.forgetReplaced();
     return !ids.empty();
   }
 
@@ -302,7 +308,9 @@ class Watch {
   WatchedScans watched_;
   OtherPoses poses_;
   EarlierScans earlier_;
-  std::set<scan::ScanId> to_retime_;  ///< whose times may be others than those of the map
+  std::set<scan::ScanId> clouds_before_;  ///< that the map had when the watch began
+  std::set<fs::path> compared_;           ///< plain paths that were compared with `earlier_`
+  std::set<scan::ScanId> to_retime_;      ///< whose times may be others than those of the map
   std::optional<std::pair<Eigen::Vector3d, std::string>> fitting_frame_;  ///< origin and crs that the map has
   bool is_built_ = false;                                                 ///< nothing is left of a first build
   bool is_busy_ = false;                                                  ///< another program has the map

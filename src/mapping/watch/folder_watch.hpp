@@ -24,14 +24,16 @@ struct WatchCallbacks {
   std::function<bool()> is_stopped = [] { return false; };  ///< asked at each look
 };
 
-/// Looks at `folder` again and again, and makes the map the one that a build from the folder gives. Scans whose files
+/// Looks at `folder` again and again, and makes the map the one that a build from the folder gives, as long as no scan
+/// file is removed. Scans whose files
 /// have not changed since the last look are added to the map in one commit; the first ones build it when it is not
 /// there. Scans whose poses or times are corrected get these; a scan is retracted when its file holds another one than
-/// the watch has read from it, and no other file holds it. Scans of removed files stay. Until a folder can be read as a
-/// set of scans (a pose is still missing), or while its frame is not the map's, it waits. A fault that stays for two
-/// looks is a note, and so is a scan that cannot be read, which is tried again when its file changes. While another
-/// program changes the map, it tries again at each look. Throws Error for faults of the map, and when the folder has
-/// another frame from the beginning. Returns how many scans were added, moved, retracted or given other times.
+/// this watch has added from it, the map has the new one, and no other file holds the old one. Scans of removed files
+/// stay. Until a folder can be read as a set of scans (a pose is still missing), or while its frame is not the map's,
+/// it waits. A fault that stays for two looks is a note, and so is a scan that cannot be read, which is tried again
+/// when its file changes. While another program changes the map, it tries again at each look. Throws Error for faults
+/// of the map, and when the folder has another frame from the beginning. Returns how many scans were added, moved,
+/// retracted or given other times.
 std::size_t watchFolder(const std::filesystem::path& folder, const std::filesystem::path& map,
                         const WatchParams& params, const WatchCallbacks& callbacks, ProgressSink& sink);
 

@@ -16,18 +16,26 @@ bool isBelow(const fs::path& path, const fs::path& folder) {
   return std::mismatch(folder.begin(), folder.end(), path.begin(), path.end()).first == folder.end();
 }
 
-/// A set that cannot be opened tells nothing about single files.
-bool isGone(const fs::path& path, const FolderLook& look) {
-  std::error_code ignored;
-  return look.is_there && !look.hasScan(path) && (look.scans || !fs::exists(path, ignored));
-}
-
 std::set<fs::path> plainPathsOf(const FolderLook& look) {
   std::set<fs::path> paths;
   for (const auto& [path, scan] : look.seen) paths.insert(plainPath(path));
   for (const auto& [path, scan] : look.faulty) paths.insert(plainPath(path));
   return paths;
 }
+
+/// Which plain paths a look does not show any more. A set that cannot be opened tells nothing about single files.
+class GoneFrom {
+ public:
+  explicit GoneFrom(const FolderLook& look) : look_(look), there_(plainPathsOf(look)) {}
+  bool operator()(const fs::path& path) const {
+    std::error_code ignored;
+    return look_.is_there && !there_.contains(path) && (look_.scans || !fs::exists(path, ignored));
+  }
+
+ private:
+  const FolderLook& look_;
+  std::set<fs::path> there_;
+};
 
 }  // namespace
 
@@ -50,7 +58,7 @@ bool WatchedScans::hasOtherPlace(const fs::path& path, const Placement& now) con
 }
 
 const WatchedScan* WatchedScans::find(const fs::path& path) const {
-  const auto scan = scans_.find(path);
+  const auto scan = scans_.find(plainPath(path));
   return scan == scans_.end() ? nullptr : &scan->second;
 }
 
@@ -72,49 +80,50 @@ std::optional<scan::ScanId> WatchedScans::idOf(const FolderLook& now, std::size_
 
 void WatchedScans::noteInMap(const fs::path& path, const scan::ScanId& id) {
   noteRead(path, id);
-  scans_[path].is_in_map = true;
+  scans_[plainPath(path)].is_in_map = true;
 }
 
 void WatchedScans::noteRead(const fs::path& path, const scan::ScanId& id) {
-  scans_[path].id = id;
-  scans_[path].is_read = true;
+  WatchedScan& scan = scans_[plainPath(path)];
+  scan.id = id, scan.is_read = true;
   read_.insert(plainPath(path));
 }
 
 void WatchedScans::noteDone(const fs::path& path, const SeenScan& now) {
-  scans_[path].seen = now;
+  scans_[plainPath(path)].seen = now;
 }
 
 void WatchedScans::noteChanged(const fs::path& path) {
-  const auto scan = scans_.find(path);
+  const auto scan = scans_.find(plainPath(path));
   if (scan == scans_.end() || !scan->second.id) return;
-  replaced_.insert(*scan->second.id);
+  replaced_.insert_or_assign(*scan->second.id, scan->first);
   scan->second.is_read = scan->second.is_in_map = false;
 }
 
 std::vector<scan::ScanId> WatchedScans::replaced() const {
   std::vector<scan::ScanId> ids;
-  std::copy_if(replaced_.begin(), replaced_.end(), std::back_inserter(ids),
-               [&](const scan::ScanId& id) { return !isHeld(id); });
+  for (const auto& [id, path] : replaced_)
+    if (const WatchedScan* now = find(path); now != nullptr && now->is_in_map && !isHeld(id)) ids.push_back(id);
   return ids;
 }
 
+void WatchedScans::forgetReplaced(const std::vector<scan::ScanId>& ids) {
+  for (const scan::ScanId& id : ids) replaced_.erase(id);
+  std::erase_if(replaced_,
+                [&](const auto& replaced) { return isHeld(replaced.first) || find(replaced.second) == nullptr; });
+}
+
 std::vector<fs::path> WatchedScans::forgetRemoved(const FolderLook& before, const FolderLook& now) {
+  const GoneFrom is_gone_before(before), is_gone_now(now);
   std::map<fs::path, WatchedScan> gone;
   for (auto scan = scans_.begin(); scan != scans_.end();) {
     const auto next = std::next(scan);
-    if (isGone(scan->first, now) && isGone(scan->first, before)) gone.insert(scans_.extract(scan));
+    if (is_gone_now(scan->first) && is_gone_before(scan->first)) gone.insert(scans_.extract(scan));
     scan = next;
   }
-  const std::set<fs::path> there = gone.empty() ? std::set<fs::path>() : plainPathsOf(now);
   std::vector<fs::path> last;
-  for (const auto& [path, scan] : gone) {
-    if (!scan.id) continue;
-    if (there.contains(plainPath(path)))
-      replaced_.insert(*scan.id);  // the same file with its path spelt otherwise: perhaps it holds another scan now
-    else if (!isHeld(*scan.id))
-      last.push_back(path);
-  }
+  for (const auto& [path, scan] : gone)
+    if (scan.id && !isHeld(*scan.id)) last.push_back(path);
   return last;
 }
 

@@ -38,9 +38,11 @@ class WatchedScans {
 
   /// The file has changed: what it held may have to leave the map.
   void noteChanged(const std::filesystem::path& path);
-  /// What changed files held and no file holds now.
+  /// What changed files held and no file holds now. A file counts when the map has what it holds now: until then the
+  /// map keeps the scan of before.
   std::vector<scan::ScanId> replaced() const;
-  void forgetReplaced() { replaced_.clear(); }
+  /// Forgets these, and what a file holds again or whose file is gone.
+  void forgetReplaced(const std::vector<scan::ScanId>& ids);
   /// Whether a scan was read from this file, perhaps before it changed.
   bool hasRead(const std::filesystem::path& path) const { return read_.contains(plainPath(path)); }
 
@@ -51,9 +53,9 @@ class WatchedScans {
  private:
   void noteRead(const std::filesystem::path& path, const scan::ScanId& id);
 
-  std::map<std::filesystem::path, WatchedScan> scans_;
-  std::set<scan::ScanId> replaced_;
-  std::set<std::filesystem::path> read_;  ///< plain paths
+  std::map<std::filesystem::path, WatchedScan> scans_;      ///< by plain path
+  std::map<scan::ScanId, std::filesystem::path> replaced_;  ///< what changed files held, with their plain paths
+  std::set<std::filesystem::path> read_;                    ///< plain paths
 };
 
 /// The scans that a map has when a watch begins, by the files from which they came.

@@ -18,7 +18,7 @@ class DirectionIndex {
   static constexpr int kFineRows = 360;
 
   /// `ends` are the ends of the rays relative to the place where they start [m]. `rows`: cells of direction from the
-  /// nadir to the zenith, and half of those around. Cost: linear in the rays and cells.
+  /// nadir to the zenith; there are twice as many around. Cost: linear in the rays and cells.
   explicit DirectionIndex(std::vector<Eigen::Vector3f> ends, int rows = kFineRows);
 
   /// Sorted by direction.

@@ -69,8 +69,9 @@ std::optional<Presence> presenceOf(std::span<const ScanVotes> votes, const Visib
 /// Whether scans in a row show that the thing was there: their log-odds are `decided` or more.
 bool showPresence(std::span<const ScanVotes> votes, const Visibility& thing, const PresenceParams& params);
 
-/// The state of a thing at the end of some scans: absent exactly when the place was seen through after the last
-/// interval in which it was there.
+/// The state of a thing at the end of some scans: absent when its place was seen through after the last interval in
+/// which it was there, or where evidence for that interval is weak (showPresence) and all of the scans show that it is
+/// away.
 enum class PresenceState : std::uint8_t { Present, Absent, NotObserved };
 std::string_view nameOf(PresenceState state);  ///< "not observed"
 

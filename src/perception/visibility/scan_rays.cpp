@@ -22,14 +22,27 @@ struct Start {
   std::vector<Eigen::Vector3f> ends;                 ///< relative to it [m]
 };
 
-/// Sorts rays by where they start.
+using Origins = std::vector<Eigen::Vector3d>;
+
+bool isBefore(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
+}
+
+/// Where rays start, each once, ascending: what follows from them does not depend on the order of the points.
+Origins distinct(Origins origins) {
+  std::sort(origins.begin(), origins.end(), isBefore);
+  origins.erase(std::unique(origins.begin(), origins.end()), origins.end());
+  return origins;
+}
+
+/// For each of the distinct origins the number of the start that it is taken for: the first one within 5 cm.
 class Starts {
  public:
-  Start& at(const Eigen::Vector3d& origin) {
-    if (all_.empty() || !isNear(last_, origin)) last_ = numberOf(origin);
-    return all_[last_];
+  explicit Starts(const Origins& distinct_origins) {
+    for (const Eigen::Vector3d& origin : distinct_origins) number_.push_back(numberOf(origin));
   }
-  std::vector<Start> take() { return std::move(all_); }
+  const Origins& all() const { return all_; }
+  std::size_t of(std::size_t distinct_origin) const { return number_[distinct_origin]; }
 
  private:
   using Cell = std::array<std::int64_t, 3>;
@@ -38,11 +51,7 @@ class Starts {
     const auto number = [](double at) { return static_cast<std::int64_t>(std::floor(at / kSameOrigin_m)); };
     return {number(p.x()), number(p.y()), number(p.z())};
   }
-  bool isNear(std::size_t start, const Eigen::Vector3d& origin) const {
-    return (all_[start].origin - origin).norm() <= kSameOrigin_m;
-  }
 
-  /// The first start near the origin, or a new one.
   std::size_t numberOf(const Eigen::Vector3d& origin) {
     const Cell cell = cellOf(origin);
     std::size_t first = all_.size();
@@ -52,39 +61,45 @@ class Starts {
           const auto known = of_cell_.find({cell[0] + x, cell[1] + y, cell[2] + z});
           if (known == of_cell_.end()) continue;
           for (const std::size_t start : known->second)
-            if (start < first && isNear(start, origin)) first = start;
+            if ((all_[start] - origin).norm() <= kSameOrigin_m) first = std::min(first, start);
         }
     if (first == all_.size()) {
       of_cell_[cell].push_back(first);
-      all_.push_back({origin, {}});
+      all_.push_back(origin);
     }
     return first;
   }
 
-  std::vector<Start> all_;
+  Origins all_;
   std::map<Cell, std::vector<std::size_t>> of_cell_;
-  std::size_t last_ = 0;
+  std::vector<std::size_t> number_;
 };
 
 std::vector<Start> startsOf(const scan::Scan& scan) {
   const scan::ScanPoints& points = scan.points;
   if (points.origin.empty() && !scan.has_pose) return {};
-  Starts starts;
-  const Eigen::Vector3d sensor = scan.T_map_sensor.translation();
-  if (points.origin.empty()) starts.at(sensor).ends.reserve(points.size());
+  Origins origins;
+  for (const Eigen::Vector3f& origin : points.origin) origins.push_back(scan::toMap(scan.T_map_sensor, origin));
+  if (origins.empty()) origins.emplace_back(scan.T_map_sensor.translation());
+  const Origins sorted = distinct(origins);
+  const Starts starts(sorted);
+  std::vector<Start> all;
+  for (const Eigen::Vector3d& origin : starts.all()) all.push_back({origin, {}});
+  if (all.size() == 1) all.front().ends.reserve(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
-    Start& start = starts.at(points.origin.empty() ? sensor : scan::toMap(scan.T_map_sensor, points.origin[i]));
+    const Eigen::Vector3d& origin = origins[points.origin.empty() ? 0 : i];
+    const auto at = std::lower_bound(sorted.begin(), sorted.end(), origin, isBefore) - sorted.begin();
+    Start& start = all[starts.of(static_cast<std::size_t>(at))];
     const Eigen::Vector3d end = scan::toMap(scan.T_map_sensor, {points.x[i], points.y[i], points.z[i]}) - start.origin;
     if (end.squaredNorm() > 0) start.ends.push_back(end.cast<float>());
   }
-  std::vector<Start> all = starts.take();
   std::erase_if(all, [](const Start& start) { return start.ends.empty(); });
   return all;
 }
 
 /// Coarser where there are few rays: the cells of many bundles would take more memory than the rays.
 int rowsFor(std::size_t rays) {
-  constexpr int kFewest = 45;
+  constexpr int kFewest = 8;
   constexpr std::size_t kCellsOfRay = 8;
   int rows = DirectionIndex::kFineRows;
   while (rows > kFewest && 2 * static_cast<std::size_t>(rows) * static_cast<std::size_t>(rows) > kCellsOfRay * rays)

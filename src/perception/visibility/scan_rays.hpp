@@ -26,16 +26,16 @@ struct PlaceVerdict {
   std::uint64_t stopped = 0;  ///< rays near it that ended before it, or so little behind it that they tell nothing
 };
 
-/// The rays of a scan, one bundle for each place of the sensor, in whatever order the points are. A ray whose own
-/// origin lies within 5 cm of the first of a bundle is taken to start there. Empty for a scan without origins: one
-/// without pose and without an origin per point.
+/// The rays of a scan, one bundle for each place of the sensor, in whatever order the points are. Rays that start
+/// within 5 cm of each other are taken to start at one place. Empty for a scan without origins: one without pose and
+/// without an origin per point.
 class ScanRays {
  public:
-  /// Cost: linear in the points, and some 20 kB and 30 us for each bundle.
+  /// Cost: linear in the points when they have no origins of their own, else n log n.
   explicit ScanRays(const scan::Scan& scan);
 
   bool empty() const { return bundles_.empty(); }
-  /// By the first of their rays.
+  /// Ascending by x, y, z of their origins.
   const std::deque<RayBundle>& bundles() const { return bundles_; }
   /// Whether a ray may concern a place within a sphere.
   bool mayConcern(const Eigen::Vector3d& centre_map, double radius_m, const RayParams& params) const;

@@ -11,7 +11,8 @@ namespace cluxel::rdf {
 /// The copy in a temporary folder, which is removed with this object.
 class PrivateCopy {
  public:
-  /// Copies the last commit of `map`, open as `descriptor`. Writers wait meanwhile; one that has begun goes on, and
+  /// Copies the last commit of `map`, open as `descriptor`. A writer that would begin meanwhile
+  /// gets MapBusy when the copy takes long; one that has begun goes on, and
   /// when it commits, the copy is made again. Throws MapBusy when commits follow each other too fast; Error
   /// (StoreUnavailable) when the temporary folder has no room.
   PrivateCopy(const std::filesystem::path& map, int descriptor);

@@ -13,8 +13,13 @@ namespace {
 bool leftOnALaterVisit(std::span<const perception::ScanVotes> votes, const perception::Visibility& thing,
                        const perception::PresenceParams& params) {
   if (!showPresence(votes, thing, params)) return false;
-  const auto presence = presenceOf(votes, thing, params);
-  return presence && presence->seen_through_s && *presence->seen_through_s - presence->last_seen_s > kPauseOfVisits_s;
+  double visit_s = presenceOf(votes, thing, params)->last_seen_s;  // the scan before, of the visit that saw it last
+  for (std::size_t i = 0; i < votes.size(); ++i) {
+    if (votes[i].time_s <= visit_s) continue;
+    if (votes[i].time_s - visit_s > kPauseOfVisits_s) return showAbsence(votes.subspan(i), thing, params);
+    visit_s = votes[i].time_s;
+  }
+  return false;
 }
 
 }  // namespace
