@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -15,6 +14,7 @@
 #include "mapping/facts/map_facts.hpp"
 #include "rdf/map_iris.hpp"
 #include "sparql/values/calendar.hpp"
+#include "tasks/finite_number.hpp"
 #include "tasks/ways/way_report.hpp"
 
 namespace cluxel::tasks {
@@ -198,10 +198,7 @@ double timeOfScans(double seconds, const std::string& text) {
 }  // namespace
 
 double timeNamed(const std::string& text) {
-  double seconds = 0;
-  const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), seconds);
-  if (fault == std::errc() && end == text.data() + text.size() && std::isfinite(seconds))
-    return timeOfScans(seconds, text);
+  if (const auto seconds = finiteNumber(text)) return timeOfScans(*seconds, text);
   auto time = sparql::parseCalendar(sparql::CalendarKind::DateTime, text);
   if (!time) time = sparql::parseCalendar(sparql::CalendarKind::Date, text);
   if (!time)
