@@ -13,11 +13,12 @@ namespace {
 bool leftOnALaterVisit(std::span<const perception::ScanVotes> votes, const perception::Visibility& thing,
                        const perception::PresenceParams& params) {
   if (!showPresence(votes, thing, params)) return false;
-  double visit_s = presenceOf(votes, thing, params)->last_seen_s;  // the scan before, of the visit that saw it last
+  // Goes to the end of the visit that saw it last: what later visits saw decides.
+  double last_of_visit_s = presenceOf(votes, thing, params)->last_seen_s;
   for (std::size_t i = 0; i < votes.size(); ++i) {
-    if (votes[i].time_s <= visit_s) continue;
-    if (votes[i].time_s - visit_s > kPauseOfVisits_s) return showAbsence(votes.subspan(i), thing, params);
-    visit_s = votes[i].time_s;
+    if (votes[i].time_s <= last_of_visit_s) continue;
+    if (votes[i].time_s - last_of_visit_s > kPauseOfVisits_s) return showAbsence(votes.subspan(i), thing, params);
+    last_of_visit_s = votes[i].time_s;
   }
   return false;
 }

@@ -10,7 +10,7 @@
 
 namespace cluxel::tasks {
 
-/// Between two visits no scan is taken for longer than this.
+/// Scans with a longer pause between them belong to different visits.
 inline constexpr double kPauseOfVisits_s = 1800;
 
 struct ObjectStates {

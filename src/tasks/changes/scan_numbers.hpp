@@ -39,7 +39,7 @@ class ScanNumbers {
     });
     return size;
   }
-  /// Visits the scans. The order is that of the numbers within 64 of them.
+  /// Visits the scans, in no certain order.
   template <typename Visit>
   void forEach(const Visit& visit) const {
     forEachWord([&](std::uint32_t number, std::uint64_t word) {

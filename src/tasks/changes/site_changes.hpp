@@ -38,9 +38,10 @@ struct SiteChanges {
 };
 
 /// Compares the scans before `since_s` (default: the begin of the last visit) with those from it on. What vanished are
-/// clusters of cluxels that rays hit before and see through afterwards; what appeared, the other way round. An object
-/// of one class and nearly one size that vanished and appeared within 10 m has moved; nearest pairs first. Throws Error
-/// (InvalidArgument) when one side has no scan with time and pose. Cost and memory as for surveyOf().
+/// clusters of cluxels that rays hit before and see through afterwards; what appeared, the other way round. When an
+/// object vanished, and another of its class and nearly its size appeared within 10 m, it has moved; nearest pairs
+/// first. Throws Error (InvalidArgument) when one side has no scan with time and pose. Cost and memory as for
+/// surveyOf().
 SiteChanges changesIn(const mapping::MapReader& map, std::optional<double> since_s, unsigned threads,
                       std::size_t max_cluxels = kRegionCluxels);
 
