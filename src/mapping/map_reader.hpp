@@ -13,7 +13,7 @@
 #include "mapping/map_inputs.hpp"
 #include "mapping/statements/statement.hpp"
 #include "perception/segments/scene.hpp"
-#include "rdf/file/layer_sizes.hpp"
+#include "rdf/file/space/layer_sizes.hpp"
 #include "rdf/store/quad_store.hpp"
 #include "rules/objects/semantic_object.hpp"
 

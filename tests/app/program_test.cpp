@@ -25,6 +25,7 @@ TEST_F(Program, BuildsAMapAndTellsSoInJson) {
   const Json layers = Json::parse(run("info " + path("map.clx").string() + " --layers --json").out);
   for (const Json& layer : layers.at("layers")) bytes += layer.at("bytes").get<std::uintmax_t>();
   EXPECT_EQ(bytes, fs::file_size(path("map.clx"))) << "every byte belongs to a layer";
+  EXPECT_GT(layers.at("disk_bytes"), bytes / 2);
   EXPECT_NE(run("info " + path("map.clx").string() + " --layers").out.find("layer scan_points"), std::string::npos);
   EXPECT_EQ(Json::parse(run("info " + path("campus").string() + " --json").out).at("scans").size(), 2U);
   const Json clouds = Json::parse(run("info " + path("map.clx").string() + " --clouds --json").out).at("cloud_list");

@@ -9,6 +9,8 @@
 #include "base/file_bytes.hpp"
 #include "mapping/free_space.hpp"
 #include "mapping/small_campus.hpp"
+#include "rdf/file/map_check.hpp"
+#include "rdf/holes.hpp"
 
 namespace cluxel::mapping {
 namespace {
@@ -141,6 +143,27 @@ TEST_F(MapCompaction, ThatFailsLeavesTheMapAndTellsWhy) {
   fs::remove_all(map.string() + ".compact");
   EXPECT_TRUE(readFile(map) == bytes);
   EXPECT_NE(notes.all.find("its free space stays in the file"), std::string::npos) << notes.all;
+}
+
+TEST_F(MapCompaction, AfterAChangeFreePagesBecomeHolesThatTheNextChangeFills) {
+  if (!hasHoles(folder->path())) GTEST_SKIP() << "the file system has no holes";
+  constexpr std::uint64_t kMuch = 3'000'000;
+  const fs::path map = copy();
+  const std::string facts = canonicalText(map);
+  leaveFree(map, kMuch);
+  const auto length = fs::file_size(map), disk = diskBytes(map);
+  {  // less than a quarter of the map, so that it is not rewritten
+    const FreeSpace space{kMuch, 10 * kMuch, kMuch, 10 * kMuch};
+    freeSpaceOfChange(map, space, silence());
+  }
+  EXPECT_EQ(fs::file_size(map), length);
+  EXPECT_LT(diskBytes(map), disk - kMuch * 9 / 10);
+  EXPECT_TRUE(canonicalText(map) == facts);
+  EXPECT_TRUE(checkMap(map).sound());
+  leaveFree(map, 10);  // LMDB uses free pages from the second commit after on
+  leaveFree(map, kMuch * 8 / 10);
+  EXPECT_LE(fs::file_size(map), length + kMuch / 10) << "the holes were not used again";
+  EXPECT_TRUE(checkMap(map).sound());
 }
 
 TEST_F(MapCompaction, FillsThePagesOfIndexes) {

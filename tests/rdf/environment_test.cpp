@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "rdf/file/commit_stamps.hpp"
-#include "rdf/file/layer_sizes.hpp"
 #include "rdf/file/lmdb_environment.hpp"
 #include "rdf/file/lock_file.hpp"
 #include "rdf/file/map_check.hpp"
+#include "rdf/file/space/layer_sizes.hpp"
 #include "rdf/map_file_fixture.hpp"
 #include "rdf/store/quad_store.hpp"
 

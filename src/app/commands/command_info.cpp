@@ -155,6 +155,11 @@ void printCloud(const mapping::Cloud& cloud) {
   std::printf("%s%s\n", cloud.time_s ? "  " : "", cloud.time_s ? dateTimeText(*cloud.time_s).c_str() : "");
 }
 
+/// Free pages may be holes, which take no room.
+std::uint64_t diskBytesOf(const mapping::MapReader& map) {
+  return rdf::freeSpaceOf(map.transaction()).disk_bytes;
+}
+
 Json layersJson(const std::vector<rdf::LayerSize>& layers) {
   Json json = Json::array();
   for (const rdf::LayerSize& layer : layers)
@@ -162,7 +167,7 @@ Json layersJson(const std::vector<rdf::LayerSize>& layers) {
   return json;
 }
 
-void printLayers(const std::vector<rdf::LayerSize>& layers, std::uint64_t points) {
+void printLayers(const std::vector<rdf::LayerSize>& layers, std::uint64_t disk_bytes, std::uint64_t points) {
   const auto row = [points](const std::string& name, const std::string& entries, std::uint64_t bytes) {
     std::printf("  layer %-18s %10s entries %12ju bytes %8.2f a point\n", name.c_str(), entries.c_str(),
                 static_cast<std::uintmax_t>(bytes), static_cast<double>(bytes) / static_cast<double>(points));
@@ -173,6 +178,7 @@ void printLayers(const std::vector<rdf::LayerSize>& layers, std::uint64_t points
     all += layer.file_bytes;
   }
   row("all", "", all);
+  row("all, on the disk", "", disk_bytes);
 }
 
 Json heightsJson(const std::vector<tasks::PlotSpread>& heights) {
@@ -238,7 +244,7 @@ ExitCode infoOfMap(const InfoOptions& options, const fs::path& file, const Sessi
     for (const auto& [name, count] : summary.objects_by_class) std::printf("  %-14s %zu\n", name.c_str(), count);
     if (options.clouds)
       for (const mapping::Cloud& cloud : map.clouds()) printCloud(cloud);
-    if (options.layers) printLayers(map.layers(), summary.points);
+    if (options.layers) printLayers(map.layers(), diskBytesOf(map), summary.points);
     if (!inputs.crs.empty()) std::printf("coordinate system: %s\n", inputs.crs.c_str());
     std::printf("built with %s\n", describeFiles(inputs).c_str());
     return ExitCode::Done;
@@ -248,7 +254,10 @@ ExitCode infoOfMap(const InfoOptions& options, const fs::path& file, const Sessi
             {"points", summary.points},      {"objects", summary.objects},
             {"quads", summary.quads},        {"objects_by_class", summary.objects_by_class}};
   if (options.clouds) json["cloud_list"] = cloudsJson(map.clouds());
-  if (options.layers) json["layers"] = layersJson(map.layers());
+  if (options.layers) {
+    json["layers"] = layersJson(map.layers());
+    json["disk_bytes"] = diskBytesOf(map);
+  }
   if (!inputs.crs.empty()) json["crs"] = inputs.crs;
   json["input_files"] = inputFilesJson(inputs);
   json["heights_by_class"] = heightsJson(figures->heights);

@@ -235,7 +235,7 @@ ChangeReport appliedTo(const fs::path& file, const std::function<MapInputs(MapIn
 ChangeReport compacted(ChangeReport report, const fs::path& file, const ChangeParams& params, ProgressSink& sink) {
   if (params.dry_run || !params.may_compact) return report;
   if (report.has_changes)
-    compactIfSparse(file, report.free_space, sink, kMaxFreeShareOfChanged);
+    freeSpaceOfChange(file, report.free_space, sink);
   else
     finishCompaction(file, sink);
   return report;

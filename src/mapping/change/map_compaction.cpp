@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Counts what a rewrite would free, and rewrites the map beside itself.
+// Counts what a rewrite would free, and rewrites the map beside itself, or gives free pages back to the file system.
 #include "mapping/change/map_compaction.hpp"
 
 #include <sys/stat.h>
@@ -7,6 +7,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <optional>
 
 #include "base/file_bytes.hpp"
 #include "cluxel/error.hpp"
@@ -16,6 +17,7 @@
 #include "rdf/file/environment.hpp"
 #include "rdf/file/lock_file.hpp"
 #include "rdf/file/map_replacement.hpp"
+#include "rdf/file/space/free_pages.hpp"
 
 namespace cluxel::mapping {
 
@@ -25,8 +27,8 @@ namespace {
 
 constexpr std::uint64_t kSmallestGain = std::uint64_t{1} << 20U;
 
-bool isWorthFreeing(std::uint64_t bytes, const rdf::FreeSpace& space, double max_free_share) {
-  return bytes > kSmallestGain && static_cast<double>(bytes) > max_free_share * static_cast<double>(space.file_bytes);
+bool isMuch(std::uint64_t bytes, std::uint64_t of_bytes, double max_share) {
+  return bytes > kSmallestGain && static_cast<double>(bytes) > max_share * static_cast<double>(of_bytes);
 }
 
 struct stat statusOf(const fs::path& file) {
@@ -57,6 +59,15 @@ fs::path copyOf(const fs::path& map) {
 
 void noteFailure(const fs::path& map, const std::exception& error, ProgressSink& sink) {
   sink.note(map.string() + ": the map is sound, but its free space stays in the file: " + error.what());
+}
+
+std::optional<rdf::FreeSpace> knownSpaceOf(const fs::path& map, ProgressSink& sink) {
+  try {
+    return rdf::freeSpaceOf(rdf::Environment::open(map, rdf::OpenMode::ReadOnly)->read());
+  } catch (const std::exception& error) {
+    noteFailure(map, error, sink);
+    return std::nullopt;
+  }
 }
 
 }  // namespace
@@ -95,26 +106,37 @@ void copyCompacted(const fs::path& map, const fs::path& copy) {
 }
 
 void compactIfSparse(const fs::path& map, ProgressSink& sink, double max_free_share) {
+  if (const auto space = knownSpaceOf(map, sink)) compactIfSparse(map, *space, sink, max_free_share);
+}
+
+bool compactIfSparse(const fs::path& map, const rdf::FreeSpace& space, ProgressSink& sink, double max_free_share) {
   try {
-    const rdf::FreeSpace space = rdf::freeSpaceOf(rdf::Environment::open(map, rdf::OpenMode::ReadOnly)->read());
-    compactIfSparse(map, space, sink, max_free_share);
+    if (!fs::exists(copyOf(map)) && !isMuch(space.bytes, space.file_bytes, max_free_share)) return false;
+    if (statusOf(map).st_nlink > 1)
+      throw Error(ErrorKind::StoreUnavailable, "it has another name (a hard link), which would keep the old file");
+    if (fs::space(fs::absolute(withoutLinks(map)).parent_path()).available < fs::file_size(map))
+      throw Error(ErrorKind::StoreUnavailable, "there is no room beside it for a copy");
+    const bool pages_are_full = !isMuch(space.bytes - space.in_free_pages, space.file_bytes, max_free_share);
+    compactMap(map, pages_are_full ? rdf::CopiedPages::AsTheyAre : rdf::CopiedPages::Filled);
+    return true;
+  } catch (const std::exception& error) {
+    noteFailure(map, error, sink);
+    return false;
+  }
+}
+
+void freeSpaceOfChange(const fs::path& map, const rdf::FreeSpace& space, ProgressSink& sink) {
+  if (compactIfSparse(map, space, sink, kMaxFreeShareOfChanged)) return;
+  try {
+    if (isMuch(space.freeOnDisk(), space.disk_bytes, kMaxFreeShare))
+      rdf::releaseFreePages(*rdf::Environment::open(map, rdf::OpenMode::ReadWrite));
   } catch (const std::exception& error) {
     noteFailure(map, error, sink);
   }
 }
 
-void compactIfSparse(const fs::path& map, const rdf::FreeSpace& space, ProgressSink& sink, double max_free_share) {
-  try {
-    if (!fs::exists(copyOf(map)) && !isWorthFreeing(space.bytes, space, max_free_share)) return;
-    if (statusOf(map).st_nlink > 1)
-      throw Error(ErrorKind::StoreUnavailable, "it has another name (a hard link), which would keep the old file");
-    if (fs::space(fs::absolute(withoutLinks(map)).parent_path()).available < fs::file_size(map))
-      throw Error(ErrorKind::StoreUnavailable, "there is no room beside it for a copy");
-    const bool pages_are_full = !isWorthFreeing(space.bytes - space.in_free_pages, space, max_free_share);
-    compactMap(map, pages_are_full ? rdf::CopiedPages::AsTheyAre : rdf::CopiedPages::Filled);
-  } catch (const std::exception& error) {
-    noteFailure(map, error, sink);
-  }
+void freeSpaceOfChange(const fs::path& map, ProgressSink& sink) {
+  if (const auto space = knownSpaceOf(map, sink)) freeSpaceOfChange(map, *space, sink);
 }
 
 void finishCompaction(const fs::path& map, ProgressSink& sink) {
@@ -126,7 +148,7 @@ void finishCompaction(const fs::path& map, ProgressSink& sink) {
   } catch (const Error&) {
     return;  // it is not left, but being made
   }
-  compactIfSparse(map, sink, kMaxFreeShareOfChanged);
+  freeSpaceOfChange(map, sink);
 }
 
 }  // namespace cluxel::mapping

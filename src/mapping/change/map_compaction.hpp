@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// A map without free space: after a change that left much of it, and on request.
+// The free space of a map: given back after a change that left much of it, and on request.
 #pragma once
 
 #include <filesystem>
 
 #include "cluxel/progress.hpp"
-#include "rdf/file/layer_sizes.hpp"
+#include "rdf/file/space/layer_sizes.hpp"
 
 namespace cluxel::mapping {
 
@@ -29,11 +29,17 @@ inline constexpr double kMaxFreeShareOfChanged = 0.25;
 /// changes that left the space. Pages of indexes are filled when that alone would free as much. Where it fails, the map
 /// stays larger, and a note tells why.
 void compactIfSparse(const std::filesystem::path& map, ProgressSink& sink, double max_free_share = kMaxFreeShare);
-/// The same when what it would free is known.
-void compactIfSparse(const std::filesystem::path& map, const rdf::FreeSpace& space, ProgressSink& sink,
+/// The same when what it would free is known. True when the map was compacted.
+bool compactIfSparse(const std::filesystem::path& map, const rdf::FreeSpace& space, ProgressSink& sink,
                      double max_free_share);
 
-/// Removes the copy that a killed compaction has left beside the map, and compacts the map if that is still worth it.
+/// After a change: compacts the map when more than kMaxFreeShareOfChanged would be freed. Else, when its free pages
+/// take more than kMaxFreeShare of what it takes on the disk, they become holes in the file, where the file system can.
+void freeSpaceOfChange(const std::filesystem::path& map, ProgressSink& sink);
+/// The same when the free space is known.
+void freeSpaceOfChange(const std::filesystem::path& map, const rdf::FreeSpace& space, ProgressSink& sink);
+
+/// Removes the copy that a killed compaction has left beside the map, and does what freeSpaceOfChange() does.
 void finishCompaction(const std::filesystem::path& map, ProgressSink& sink);
 
 }  // namespace cluxel::mapping

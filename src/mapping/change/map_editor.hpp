@@ -19,7 +19,7 @@
 #include "mapping/clouds/scan_store.hpp"
 #include "mapping/facts/semantic_layer.hpp"
 #include "mapping/window/semantic_update.hpp"
-#include "rdf/file/layer_sizes.hpp"
+#include "rdf/file/space/layer_sizes.hpp"
 
 namespace cluxel::mapping {
 

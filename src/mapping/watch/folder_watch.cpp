@@ -68,7 +68,7 @@ class Watch {
     }
     extension_.close();
     if (changed_ > 0)
-      compactIfSparse(map_, sink_, kMaxFreeShareOfChanged);
+      freeSpaceOfChange(map_, sink_);
     else
       finishCompaction(map_, sink_);
     return changed_;

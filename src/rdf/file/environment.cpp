@@ -136,6 +136,12 @@ std::shared_ptr<LmdbEnvironment> environmentOf(const fs::path& file, EnvHandle h
   return environment;
 }
 
+struct stat statusOf(int descriptor, const fs::path& file) {
+  struct stat status {};
+  if (::fstat(descriptor, &status) != 0) failStore(file, errno, "examine the map");
+  return status;
+}
+
 /// An environment on a private copy of the map, or the one that was made of the same commit before.
 std::shared_ptr<LmdbEnvironment> openCopy(const fs::path& file, const Descriptor& descriptor) {
   OpenEnvironments& table = openEnvironments();
@@ -244,9 +250,23 @@ LmdbEnvironment::LmdbEnvironment(fs::path file, EnvHandle handle, int data_lock,
       values_(std::make_unique<ValueCache>()) {}
 
 std::uint64_t LmdbEnvironment::fileSize() const {
-  struct stat status {};
-  if (::fstat(data_lock_, &status) != 0) failStore(file_, errno, "examine the map");
-  return static_cast<std::uint64_t>(status.st_size);
+  return static_cast<std::uint64_t>(statusOf(data_lock_, file_).st_size);
+}
+
+std::uint64_t LmdbEnvironment::diskBytes() const {
+  constexpr std::uint64_t kBlock = 512;  // of st_blocks, on every file system
+  return static_cast<std::uint64_t>(statusOf(data_lock_, file_).st_blocks) * kBlock;
+}
+
+bool LmdbEnvironment::punchHole(std::uint64_t begin, std::uint64_t bytes) const {
+  int code = 0;
+  do
+    code = ::fallocate(data_lock_, FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE, static_cast<off_t>(begin),
+                       static_cast<off_t>(bytes));
+  while (code != 0 && errno == EINTR);
+  if (code == 0) return true;
+  if (errno == EOPNOTSUPP || errno == ENOSYS) return false;
+  failStore(file_, errno, "free space of the map");
 }
 
 LmdbEnvironment::~LmdbEnvironment() {

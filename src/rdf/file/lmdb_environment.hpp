@@ -59,7 +59,10 @@ class LmdbEnvironment final : public Environment {
   /// Checks all pages of the snapshot's commit. Throws Error (StoreUnavailable) for damaged ones.
   void checkPages(const ReadTransaction::Impl& snapshot) const;
 
-  std::uint64_t fileSize() const;  ///< at this moment
+  std::uint64_t fileSize() const;   ///< at this moment
+  std::uint64_t diskBytes() const;  ///< that the file takes on the disk; less than its size when it has holes
+  /// Gives the disk space of a part of the file back. False where the file system has no holes.
+  bool punchHole(std::uint64_t begin, std::uint64_t bytes) const;
   MDB_env* handle() const { return handle_.get(); }
   MDB_dbi mainTable() const { return main_; }  ///< LMDB's table of tables, with the records of the format
   MDB_dbi table(Table table) const { return tables_[static_cast<std::size_t>(table)]; }

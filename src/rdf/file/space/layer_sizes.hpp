@@ -2,6 +2,7 @@
 // How the bytes of a map file are divided among its tables.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -26,6 +27,13 @@ struct FreeSpace {
   std::uint64_t bytes = 0;          ///< that a rewrite would free
   std::uint64_t file_bytes = 0;     ///< size of the file up to the last page of the commit
   std::uint64_t in_free_pages = 0;  ///< the share of `bytes` in free pages; the rest lies in half-filled index pages
+  std::uint64_t disk_bytes = 0;     ///< that the file takes on the disk, without its holes
+
+  /// What free pages take on the disk, where they are no holes.
+  std::uint64_t freeOnDisk() const {
+    const std::uint64_t in_use = file_bytes - in_free_pages;
+    return disk_bytes - std::min(disk_bytes, in_use);
+  }
 };
 /// Cost: the list of free pages is read.
 FreeSpace freeSpaceOf(const ReadTransaction& transaction);

@@ -1,34 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 // Counts pages as LMDB's data format 1 lays entries out.
-#include "rdf/file/layer_sizes.hpp"
+#include "rdf/file/space/layer_sizes.hpp"
 
 #include <algorithm>
-#include <cstring>
 #include <map>
 
 #include "rdf/file/lmdb_environment.hpp"
+#include "rdf/file/space/free_pages.hpp"
+#include "rdf/file/space/table_entries.hpp"
 #include "rdf/store/store_snapshot.hpp"
 
 namespace cluxel::rdf {
 
 namespace {
 
-constexpr MDB_dbi kFreePages = 0;  // LMDB's own table of free pages
 constexpr const char* kFreePagesName = "free pages";
 constexpr std::uint64_t kNodeHead = 8, kNodeSlot = 2;
-
-/// Calls `visit` with each entry of a table, without reading long values.
-template <typename Visit>
-void forEachEntry(const ReadTransaction::Impl& state, MDB_dbi table, const Visit& visit) {
-  MDB_cursor* raw = nullptr;
-  state.check(mdb_cursor_open(state.live(), table, &raw), "read a table");
-  const CursorHandle cursor(raw);
-  MDB_val key;
-  MDB_val value;
-  int code = mdb_cursor_get(raw, &key, &value, MDB_FIRST);
-  for (; code == MDB_SUCCESS; code = mdb_cursor_get(raw, &key, &value, MDB_NEXT)) visit(toView(key), toView(value));
-  if (code != MDB_NOTFOUND) state.check(code, "read a table");
-}
 
 /// A leaf holds at least two nodes; the value of a longer one has pages of its own.
 std::uint64_t bytesOfEntry(std::uint64_t key, std::uint64_t value, std::uint64_t page) {
@@ -37,16 +24,6 @@ std::uint64_t bytesOfEntry(std::uint64_t key, std::uint64_t value, std::uint64_t
   if (node <= longest) return node + (node & 1U) + kNodeSlot;
   const std::uint64_t pages = (lmdb_page::kHeaderSize - 1 + value) / page + 1;
   return kNodeHead + key + sizeof(lmdb_page::PageNumber) + kNodeSlot + pages * page;
-}
-
-std::uint64_t freePages(const ReadTransaction::Impl& state) {
-  std::uint64_t free = 0;
-  forEachEntry(state, kFreePages, [&](std::string_view, std::string_view value) {
-    std::size_t count = 0;
-    if (value.size() >= sizeof count) std::memcpy(&count, value.data(), sizeof count);
-    free += std::min(count, value.size() / sizeof count);
-  });
-  return free;
 }
 
 /// The part of the file that the commit knows.
@@ -58,7 +35,7 @@ std::uint64_t fileBytes(const ReadTransaction::Impl& state, std::uint64_t page) 
 
 class LayerCount {
  public:
-  explicit LayerCount(const ReadTransaction& transaction) : state_(transaction.impl()) {
+  explicit LayerCount(const ReadTransaction& transaction) : transaction_(transaction), state_(transaction.impl()) {
     MDB_stat stat;
     state_.check(mdb_stat(state_.live(), state_.environment->mainTable(), &stat), "read the map");
     page_ = stat.ms_psize;
@@ -102,7 +79,7 @@ class LayerCount {
   }
 
   void addPages() {
-    const std::uint64_t free = freePages(state_), all = fileBytes(state_, page_);
+    const std::uint64_t free = freePageCount(transaction_), all = fileBytes(state_, page_);
     std::uint64_t known = free * page_;
     for (const LayerSize& layer : layers_) known += layer.file_bytes;
     const std::uint64_t other = all - std::min(all, known);
@@ -110,6 +87,7 @@ class LayerCount {
     layers_.push_back({kFreePagesName, free, free * page_});
   }
 
+  const ReadTransaction& transaction_;
   ReadTransaction::Impl& state_;
   std::uint64_t page_ = 0;
   std::vector<LayerSize> layers_;
@@ -122,8 +100,8 @@ FreeSpace freeSpaceOf(const ReadTransaction& transaction) {
   MDB_stat stat;
   state.check(mdb_stat(state.live(), state.environment->mainTable(), &stat), "read the map");
   const std::uint64_t page = stat.ms_psize;
-  const std::uint64_t in_free_pages = freePages(state) * page;
-  FreeSpace space{in_free_pages, fileBytes(state, page), in_free_pages};
+  const std::uint64_t in_free_pages = freePageCount(transaction) * page;
+  FreeSpace space{in_free_pages, fileBytes(state, page), in_free_pages, state.environment->diskBytes()};
   StoreSnapshot& snapshot = snapshotOf(state);
   if (!snapshot.isMapped()) return space;  // then the pages of indexes are not known without reading them
   for (const Table index : state.environment->indexes()) {
