@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Scores `cluxel changes MAP --json` against the truth of a generated campus with two visits.
+"""Scores `cluxel changes MAP --json` against the truth of a generated campus, of which it tells what the last visit changed.
 
 Usage: change_scores.py CHANGES.json TRUTH_FOLDER [--points POINTS.csv] [--list]
        change_scores.py --sum SCORES...
@@ -10,7 +10,8 @@ Events. A truth event is something that is gone ("left", "cut", and the old plac
 measure if it stood there, at least 20 points on it. A reported event matches one of the same kind when the boxes, padded by 0.1 m, overlap by an intersection over
 union of 0.2, or the centre of the smaller one lies within the other; the best pairs first, one to one. A further report whose centre
 lies within the box of a true event, padded by 0.5 m, is a piece of it: neither true nor false. That holds for events that
-do not count, too.
+do not count, too. Of more than two visits the events of the last one are true; a report that matches an event of an earlier
+visit is false, and counted as "stale", too.
 
 States. For each object of the truth the reported object, or changed part of an object, whose box overlaps it most (intersection over union of at least
 0.2) gives the state in the last visit: present, absent or not observed. In the truth an object is not observed when the
@@ -96,11 +97,15 @@ def reported_events(changes):
     return events
 
 
-def true_events(folder):
-    """Events that both visits could see, and those that one of them could not."""
+def last_visit(folder):
+    return max(int(row["visit"]) for row in csv.DictReader(open(f"{folder}/visits.csv")))
+
+
+def true_events(folder, visits):
+    """Events of some visits that the visit and the one before could see, and those that one of them could not."""
     clear, unclear = [], []
     for row in csv.DictReader(open(f"{folder}/events.csv")):
-        if row["event"] == "hidden":
+        if row["event"] == "hidden" or int(row["visit"]) not in visits:
             continue
         sides = []
         if row["xmin"]:
@@ -117,7 +122,8 @@ def true_events(folder):
 def score_events(changes, folder, listing):
     """The counts, and the boxes of what is reported to be gone and matches no true event."""
     reported = reported_events(changes)
-    clear, unclear = true_events(folder)
+    last = last_visit(folder)
+    clear, unclear = true_events(folder, [last])
     left, right = match(reported, clear)
     rest = [event for i, event in enumerate(reported) if i not in left]
     of_unclear = match(rest, unclear)[0]
@@ -131,7 +137,9 @@ def score_events(changes, folder, listing):
         for j, event in enumerate(clear):
             if j not in right:
                 print("missed", event, file=sys.stderr)
-    scores = {"true": len(left), "pieces": len(pieces), "false": len(false), "missed": len(clear) - len(right), "unclear": len(unclear)}
+    earlier = sum(true_events(folder, range(1, last)), [])
+    stale = match(false, earlier)[0]
+    scores = {"stale": len(stale), "true": len(left), "pieces": len(pieces), "false": len(false), "missed": len(clear) - len(right), "unclear": len(unclear)}
     return scores, [box for kind, box, _ in rest if kind == "gone"]
 
 
@@ -143,17 +151,18 @@ def score_states(changes, gone, seen, boxes, present, cut, hidden):
         for key in ("states", "parts")
     )
     table, vanished = {}, 0
+    last = str(max(int(visit) for _, visit in seen))
     for instance, box in boxes.items():
-        if (instance, "1") not in seen:
+        if (instance, last) not in seen:
             continue
         states = wholes + [part for part in parts if overlap(part[1], box) >= 0.5]
         best = max(states, key=lambda state: overlap(state[1], box), default=None)
         if best is None or overlap(best[1], box) < 0.2:
             continue
-        share = seen[instance, "1"]
+        share = seen[instance, last]
         if NOT_SEEN <= share < MIN_SEEN:
             continue
-        truth = "not observed" if share < NOT_SEEN else "present" if present[instance, "1"] else "absent"
+        truth = "not observed" if share < NOT_SEEN else "present" if present[instance, last] else "absent"
         if truth == "present" and instance in cut:
             truth = "cut"
         if truth == "not observed":
@@ -233,6 +242,8 @@ def sum_up(files):
     true, false, missed = (events[key] for key in ("true", "false", "missed"))
     print(f"| campuses | {len(files)} |\n|---|---|")
     print(f"| events found, false, missed | {true}, {false}, {missed} |")
+    if events.get("stale"):
+        print(f"| false ones that are events of earlier visits | {events['stale']} |")
     print(f"| pieces of true events; events too little seen | {events['pieces']}; {events['unclear']} |")
     print(f"| precision, recall | {true / (true + false):.3f}, {true / (true + missed):.3f} |")
     print(f"| F1 | {2 * true / (2 * true + false + missed):.3f} |")

@@ -11,6 +11,7 @@
 namespace cluxel::tasks {
 namespace {
 
+constexpr double kDay_s = 86400;
 const Box kNorth = boxFrom({-15, 10, 0}, {15, 10.5, 5}), kSouth = boxFrom({-15, -12.5, 0}, {15, -12, 5});
 const Box kCar = boxFrom({2, 4, 0.25}, {6.2, 5.8, 1.5});
 
@@ -30,7 +31,7 @@ class BoxMap {
   }
   const mapping::MapReader& map() const { return *map_; }
   SiteChanges changesSince(std::size_t visit) const {
-    return changesIn(*map_, 1.7e9 + 86400.0 * static_cast<double>(visit), 1);
+    return changesIn(*map_, {1.7e9 + kDay_s * static_cast<double>(visit)}, 1);
   }
   /// Objects around a place that rays of later scans saw through.
   std::size_t goneAt(const Eigen::Vector3d& place) const {
@@ -54,6 +55,13 @@ std::vector<const SiteChange*> changesAt(const SiteChanges& found, const Eigen::
   for (const SiteChange& change : found.changes)
     if (change.thing.box.exteriorDistance(place) < 0.5) at.push_back(&change);
   return at;
+}
+
+std::vector<SiteChange::Kind> kindsAt(const SiteChanges& found, const Eigen::Vector3d& place) {
+  std::vector<SiteChange::Kind> kinds;
+  for (const SiteChange* change : changesAt(found, place))
+    if (change->thing.object) kinds.push_back(change->kind);
+  return kinds;
 }
 
 TEST(ReturningThings, ACarThatLeftAndCameBackIsThere) {
@@ -85,6 +93,45 @@ TEST(ReturningThings, WhatStandsWhereACarLeftIsThere) {
   EXPECT_EQ(site.goneAt(crate.center()), 0U);
 }
 
+/// Two cars of one size, 6 m apart.
+const Box kOther = boxFrom({-6, 4, 0.25}, {-1.8, 5.8, 1.5});
+
+TEST(ReturningThings, WhatLeftBeforeHasNotVanishedSince) {
+  const BoxMap site({visit({kCar}), visit({}), visit({})});
+  EXPECT_EQ(changesAt(site.changesSince(1), kCar.center()).size(), 1U);
+  EXPECT_TRUE(changesAt(site.changesSince(2), kCar.center()).empty());
+}
+
+TEST(ReturningThings, WhatCameAndLeftAgainHasNotAppearedSince) {
+  const BoxMap site({visit({}), visit({kCar}), visit({})});
+  EXPECT_TRUE(changesAt(site.changesSince(1), kCar.center()).empty());
+  const SiteChanges of_second = changesIn(site.map(), {.since_s = 1.7e9 + kDay_s, .until_s = 1.7e9 + 1.5 * kDay_s}, 1);
+  const auto changes = changesAt(of_second, kCar.center());
+  ASSERT_EQ(changes.size(), 1U) << "as the second visit saw it";
+  EXPECT_EQ(changes[0]->kind, SiteChange::Kind::Appeared);
+}
+
+TEST(ReturningThings, CarsThatOneVisitSawBothHaveNotMoved) {
+  const BoxMap site({visit({kOther}), visit({kCar, kOther}), visit({kCar})});
+  const SiteChanges since_first = site.changesSince(1), since_second = site.changesSince(2);
+  EXPECT_EQ(kindsAt(since_first, kCar.center()), std::vector{SiteChange::Kind::Appeared});
+  EXPECT_EQ(kindsAt(since_first, kOther.center()), std::vector{SiteChange::Kind::Vanished});
+  EXPECT_EQ(kindsAt(since_second, kOther.center()), std::vector{SiteChange::Kind::Vanished});
+  const BoxMap moved({visit({kOther}), visit({kCar})});
+  EXPECT_EQ(kindsAt(moved.changesSince(1), kOther.center()), std::vector{SiteChange::Kind::Moved});
+}
+
+TEST(ReturningThings, AVisitTellsWhatItChangedOnce) {
+  const BoxMap site({visit({kCar}), visit({}), visit({kOther}), visit({kOther})});
+  const std::vector<SiteChanges> visits = changesOfVisits(site.map(), 1);
+  ASSERT_EQ(visits.size(), 3U);
+  EXPECT_EQ(kindsAt(visits[0], kCar.center()), std::vector{SiteChange::Kind::Vanished});
+  EXPECT_EQ(kindsAt(visits[1], kOther.center()), std::vector{SiteChange::Kind::Appeared});
+  EXPECT_TRUE(kindsAt(visits[0], kOther.center()).empty());
+  EXPECT_TRUE(kindsAt(visits[1], kCar.center()).empty());
+  EXPECT_TRUE(visits[2].changes.empty());
+}
+
 TEST(ReturningThings, OneRayThatPassesOnTheSameVisitDoesNotHideThatAThingLeft) {
   const auto votes = [](double time_s, std::size_t hits, std::size_t seen_through) {
     perception::ScanVotes scan;
@@ -93,7 +140,6 @@ TEST(ReturningThings, OneRayThatPassesOnTheSameVisitDoesNotHideThatAThingLeft) {
     for (std::size_t i = 0; i < seen_through; ++i) scan.seen_through.set(hits + i);
     return scan;
   };
-  constexpr double kDay_s = 86400;
   const auto wasAway = [&](const std::vector<perception::ScanVotes>& history) {
     return statesOf(0, history, 2 * kDay_s).was_away;
   };

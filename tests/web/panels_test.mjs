@@ -36,7 +36,7 @@ test('the slider over visits shows what cluxel changes finds', async () => {
   const count = (kind) => page.textContent(`.visit-kinds [data-kind="${kind}"] b`).then(Number);
   for (const kind of ['appeared', 'vanished', 'moved'])
     assert.equal(await count(kind), changes.changes.filter((change) => change.change === kind).length, kind);
-  const unseen = changes.states.filter((one) => one.after === 'not observed');
+  const unseen = changes.states.filter((one) => one.before === 'present' && one.after === 'not observed');
   assert.equal(await count('unobserved'), unseen.length);
   assert.equal(await page.locator('ol.change-list li').count(), changes.changes.length);
   assert.equal(await page.locator('.pin-mark').count(), changes.changes.length);

@@ -4,7 +4,6 @@
 #include "app/map_condition.hpp"
 #include "app/shared_options.hpp"
 #include "base/file_pieces.hpp"
-#include "base/utc_time.hpp"
 #include "mapping/facts/map_facts.hpp"
 #include "tasks/changes/changed_points.hpp"
 #include "tasks/changes/site_changes.hpp"
@@ -16,7 +15,7 @@ namespace {
 
 struct ChangesArguments {
   fs::path map, points;
-  std::string since;
+  std::string since, until;
   bool states = false, allow_unfinished = false;
 };
 
@@ -38,8 +37,8 @@ void printChanges(const mapping::MapReader& map, const tasks::SiteChanges& found
     unseen += states.after == perception::PresenceState::NotObserved ? 1 : 0;
     there += states.after == perception::PresenceState::Present ? 1 : 0;
   }
-  std::printf("since %s: %zu changes; %zu objects are there, %zu were not observed again\n",
-              dateTimeText(found.since_s).c_str(), found.changes.size(), there, unseen);
+  std::printf("%s: %zu changes; %zu objects are there, %zu were not observed again\n", periodText(found).c_str(),
+              found.changes.size(), there, unseen);
   for (const tasks::SiteChange& change : found.changes) {
     std::printf("%-8s  %s", std::string(nameOf(change.kind)).c_str(), nameOf(map, change.thing).c_str());
     if (change.now) std::printf(" by %.1f m, now %s", change.distance_m, nameOf(map, *change.now).c_str());
@@ -57,9 +56,10 @@ ExitCode changes(const ChangesArguments& arguments, Session& session) {
   if (!arguments.points.empty()) refuseToReplaceMap(arguments.points);
   const mapping::MapReader map(arguments.map);
   noteUnfinished(arguments.map, map.isFinished(), arguments.allow_unfinished, session);
-  std::optional<double> since_s;
-  if (!arguments.since.empty()) since_s = tasks::timeNamed(arguments.since);
-  const tasks::SiteChanges found = tasks::changesIn(map, since_s, session.threadCount());
+  tasks::ChangeTimes times;
+  if (!arguments.since.empty()) times.since_s = tasks::timeNamed(arguments.since);
+  if (!arguments.until.empty()) times.until_s = tasks::timeNamed(arguments.until);
+  const tasks::SiteChanges found = tasks::changesIn(map, times, session.threadCount());
   if (!arguments.points.empty()) writePoints(arguments.points, map, found);
   if (session.json)
     print(tasks::changesJson(map, found));
@@ -79,6 +79,7 @@ void addChanges(CLI::App& app, Session& session) {
   command->add_option(
       "--since", arguments->since,
       "scans from this time on are later: 2023-11-15T22:13:20Z, or seconds since 1970 [the last visit]");
+  command->add_option("--until", arguments->until, "scans after this time do not count [the last scan]");
   command->add_flag("--states", arguments->states,
                     "list every object and changed part: present, absent or not observed, before and after");
   command

@@ -129,9 +129,10 @@ TaskRow unobservedRow(const mapping::MapReader& map, const ObjectStates& states)
 
 TaskAnswer runChanges(const TaskContext& context, const TaskValues& values) {
   const mapping::MapReader& map = context.map;
-  std::optional<double> since_s;
-  if (values.has("since")) since_s = timeNamed(values.text("since"));
-  const SiteChanges found = changesIn(map, since_s, 1);
+  ChangeTimes times;
+  if (values.has("since")) times.since_s = timeNamed(values.text("since"));
+  if (values.has("until")) times.until_s = timeNamed(values.text("until"));
+  const SiteChanges found = changesIn(map, times, 1);
   std::map<std::uint32_t, const ObjectStates*> states_of;
   for (const ObjectStates& states : found.states) states_of[states.object] = &states;
   TaskAnswer answer;
@@ -150,8 +151,8 @@ TaskAnswer runChanges(const TaskContext& context, const TaskValues& values) {
     answer.rows.push_back(unobservedRow(map, states));
     if (context.with_reasons) answer.rows.back().why.push_back(presenceLine(states));
   }
-  answer.notes.push_back("since " + dateTimeText(found.since_s) + ": " + std::to_string(found.changes.size()) +
-                         " changes; " + std::to_string(there) + " objects are there, " + std::to_string(unseen) +
+  answer.notes.push_back(periodText(found) + ": " + std::to_string(found.changes.size()) + " changes; " +
+                         std::to_string(there) + " objects are there, " + std::to_string(unseen) +
                          " were not observed again");
   return answer;
 }
@@ -163,6 +164,7 @@ Task changesTask() {
   task.parameters = {{"since", "", "",
                       "scans from this time on are later: 2023-11-15T22:13:20Z, or seconds since 1970; "
                       "without it the begin of the last visit"},
+                     {"until", "", "", "scans after this time do not count; without it all count"},
                      {"unobserved", "", "false", "true: with the objects that were not observed again", Kind::Flag}};
   task.columns = {{"change", "text", "vanished, appeared, moved, not observed"},
                   {"object", "IRI", "the object that most of the change belongs to; absent when most belongs to none"},

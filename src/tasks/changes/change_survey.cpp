@@ -75,25 +75,29 @@ class FirstFindings {
 
 class Survey {
  public:
-  Survey(const mapping::MapReader& map, double since_s, std::size_t max_cluxels, unsigned threads)
+  Survey(const mapping::MapReader& map, const ComparedTimes& times, std::size_t max_cluxels, unsigned threads)
       : map_(map),
-        since_s_(since_s),
+        since_s_(times.since_s),
         threads_(threads),
-        clouds_(map.clouds()),
+        clouds_(cloudsWithin(map.clouds(), times)),
         regions_(map, max_cluxels),
         unread_(regions_.tiles()) {
-    for (const mapping::Cloud* cloud : mapping::timedClouds(clouds_))
+    std::vector<double> times_s;
+    for (const mapping::Cloud* cloud : mapping::timedClouds(clouds_)) {
+      times_s.push_back(*cloud->time_s);
       scans_.push_back(
-          {*cloud, *cloud->time_s < since_s ? kBefore : kAfter, static_cast<std::uint32_t>(scans_.size())});
+          {*cloud, *cloud->time_s < since_s_ ? kBefore : kAfter, static_cast<std::uint32_t>(scans_.size())});
+    }
+    survey_.visits = Visits(times_s, since_s_);
   }
 
   ChangeSurvey run() {
     for (std::size_t i = 0; i < regions_.size(); ++i) surveyRegion(regions_.read(i));
     std::sort(survey_.states.begin(), survey_.states.end(),
               [](const ObjectStates& a, const ObjectStates& b) { return a.object < b.object; });
-    for (std::vector<ObjectBack>& of_time : survey_.back)
+    for (std::vector<WholeObject>& of_time : survey_.wholes)
       std::sort(of_time.begin(), of_time.end(),
-                [](const ObjectBack& a, const ObjectBack& b) { return a.object < b.object; });
+                [](const WholeObject& a, const WholeObject& b) { return a.object < b.object; });
     KeptCluxels::Clusters clusters = kept_cluxels_.take();
     survey_.cluxels = std::move(clusters.cluxels), survey_.clusters = std::move(clusters.groups);
     for (const std::size_t time : {kBefore, kAfter}) {
@@ -178,12 +182,14 @@ class Survey {
       const auto geometry = mapping::geometryOf(region.scene.cluxels, mapping::cluxelsOf(region.objects[i]));
       states.box = {geometry.min, geometry.max};
       states.centre = geometry.box.center.head<2>();
+      states.visits = visitsWithIt(votesByVisit(votes[i], survey_.visits));
       survey_.states.push_back(states);
-      if (!states.was_away) continue;
-      ObjectBack back{states.object, mapping::cluxelsOf(region.objects[i]), states.box};
-      for (std::uint32_t& cluxel : back.cluxels) cluxel = region.number[cluxel];
-      std::sort(back.cluxels.begin(), back.cluxels.end());
-      survey_.back[states.before == perception::PresenceState::Present ? kBefore : kAfter].push_back(std::move(back));
+      if (!changedAsWhole(states)) continue;
+      WholeObject whole{states.object, mapping::cluxelsOf(region.objects[i]), states.box, states.visits};
+      for (std::uint32_t& cluxel : whole.cluxels) cluxel = region.number[cluxel];
+      std::sort(whole.cluxels.begin(), whole.cluxels.end());
+      survey_.wholes[states.before == perception::PresenceState::Present ? kBefore : kAfter].push_back(
+          std::move(whole));
     }
   }
 
@@ -231,8 +237,16 @@ class Survey {
 
 }  // namespace
 
-ChangeSurvey surveyOf(const mapping::MapReader& map, double since_s, std::size_t max_cluxels, unsigned threads) {
-  return Survey(map, since_s, max_cluxels, threads).run();
+std::vector<mapping::Cloud> cloudsWithin(std::vector<mapping::Cloud> clouds, const ComparedTimes& times) {
+  std::erase_if(clouds, [&](const mapping::Cloud& cloud) {
+    return cloud.time_s && (*cloud.time_s < times.from_s || *cloud.time_s > times.until_s);
+  });
+  return clouds;
+}
+
+ChangeSurvey surveyOf(const mapping::MapReader& map, const ComparedTimes& times, std::size_t max_cluxels,
+                      unsigned threads) {
+  return Survey(map, times, max_cluxels, threads).run();
 }
 
 }  // namespace cluxel::tasks

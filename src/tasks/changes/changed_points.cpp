@@ -60,6 +60,7 @@ std::vector<ChangedPoint> changedPoints(const mapping::MapReader& map, const Sit
     }
     if (!has_changes) continue;
     for (const mapping::Cloud* cloud : mapping::timedClouds(clouds)) {
+      if (changes.until_s && *cloud->time_s > *changes.until_s) continue;
       const bool is_before = *cloud->time_s < changes.since_s;
       regions.forEachPoint(region, *cloud, [&](const Eigen::Vector3d& p_map, std::uint32_t cluxel, std::size_t point) {
         if (of_cluxel[cluxel] == nullptr) return;

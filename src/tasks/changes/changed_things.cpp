@@ -3,6 +3,7 @@
 #include "tasks/changes/changed_things.hpp"
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <unordered_map>
 #include <utility>
@@ -12,10 +13,13 @@
 #include "tasks/changes/changed_parts.hpp"
 #include "tasks/changes/point_cells.hpp"
 #include "tasks/changes/side_by_side.hpp"
+#include "tasks/changes/visit_votes.hpp"
 
 namespace cluxel::tasks {
 
 namespace {
+
+using perception::PresenceState;
 
 constexpr double kSameChange_m = 0.3;  ///< a part that lies nearer to a change of its kind belongs to it
 
@@ -62,7 +66,7 @@ class Things {
     const std::size_t clusters = things_.size();
     for (const ChangeGroup& part : partsAmong(survey_.parts[time_], cells_))
       if (!isNearChange(boxOf(cells_, part), clusters)) addGroups({part});
-    for (const ObjectBack& back : survey_.back[time_]) addWhole(back);
+    for (const WholeObject& whole : survey_.wholes[time_]) addWhole(whole);
     markPieces();
     return std::move(things_);
   }
@@ -83,36 +87,71 @@ class Things {
     std::sort(group.begin(), group.end());
     const std::vector<ChangeGroup> sheets = sheetsOf(cells_, group);
     if (sheets.size() > 1) return addGroups(sheets);
-    addThing(std::move(numbers), box);
+    addThing(std::move(numbers), box, votesAtCluxels(cluster));
   }
 
   void addGroups(const std::vector<ChangeGroup>& groups) {
     std::vector<std::vector<std::uint32_t>> shares = shareOut(cells_, groups);
-    for (std::size_t i = 0; i < groups.size(); ++i) addThing(std::move(shares[i]), boxOf(cells_, groups[i]));
+    for (std::size_t i = 0; i < groups.size(); ++i)
+      addThing(std::move(shares[i]), boxOf(cells_, groups[i]), votesInCells(groups[i]));
+  }
+
+  /// What the visits of both times found at the places of a thing, by time.
+  using VotesOfTimes = std::array<VisitVotes, 2>;
+
+  VotesOfTimes votesAtCluxels(const ChangeGroup& cluster) const {
+    return votesOf(cluster.size(), [&](std::size_t time, std::size_t place, VoteOfPlaces& votes) {
+      const ChangedCluxels& all = survey_.cluxels;
+      const RayFindings& found = (time == kBefore ? all.before : all.after)[cluster[place]];
+      ScanNumbers passed = found.seen_through;
+      passed |= found.passed;
+      votes.addPlace(found.hits, passed);
+    });
+  }
+
+  VotesOfTimes votesInCells(const ChangeGroup& group) const {
+    return votesOf(group.size(), [&](std::size_t time, std::size_t place, VoteOfPlaces& votes) {
+      const PointCell& cell = cells_[group[place]];
+      const RayLooks& looks = time == time_ ? cell.own : cell.other;
+      votes.addPlace(looks.hit_scans, looks.through_scans);
+    });
+  }
+
+  template <typename AddPlace>
+  VotesOfTimes votesOf(std::size_t places, const AddPlace& add) const {
+    VotesOfTimes votes;
+    for (const std::size_t time : {kBefore, kAfter}) {
+      VoteOfPlaces gathered(survey_.visits, places);
+      for (std::size_t place = 0; place < places; ++place) add(time, place, gathered);
+      votes[time] = gathered.take();
+    }
+    return votes;
   }
 
   /// Names the thing after the object that most of its cluxels belong to.
-  void addThing(std::vector<std::uint32_t> cluxels, const Eigen::AlignedBox3d& box) {
-    if (cluxels.empty()) return;
-    ChangedThing thing{std::move(cluxels), std::nullopt, false, box, false};
-    std::map<std::uint32_t, std::size_t> votes;
-    for (const std::uint32_t cluxel : thing.cluxels) ++votes[object_of_cluxel_.at(cluxel)];
-    const auto most =
-        std::max_element(votes.begin(), votes.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+  void addThing(std::vector<std::uint32_t> cluxels, const Eigen::AlignedBox3d& box, const VotesOfTimes& votes) {
+    if (cluxels.empty() || isAwayAtEnd(votes[time_])) return;
+    ChangedThing thing{std::move(cluxels), std::nullopt, false, box, visitsWithIt(votes[time_])};
+    std::map<std::uint32_t, std::size_t> counts;
+    for (const std::uint32_t cluxel : thing.cluxels) ++counts[object_of_cluxel_.at(cluxel)];
+    const auto most = std::max_element(counts.begin(), counts.end(),
+                                       [](const auto& a, const auto& b) { return a.second < b.second; });
     if (most->first != mapping::kNoObject) {
       thing.object = most->first;
       const auto stable = survey_.stable_of_object.find(most->first);
-      thing.is_part =
-          (stable != survey_.stable_of_object.end() && stable->second > most->second) || !isGoneAsWhole(most->first);
+      const ObjectStates* states = statesOf(most->first);
+      const bool is_gone_as_whole = states == nullptr || stateAtOtherTime(*states) == PresenceState::Absent;
+      thing.is_part = (stable != survey_.stable_of_object.end() && stable->second > most->second) || !is_gone_as_whole;
+      if (states != nullptr && isHiddenPart(*states, votes[1 - time_])) return;
     }
     things_.push_back(std::move(thing));
   }
 
   /// Nothing when its cluxels tell a change.
-  void addWhole(const ObjectBack& back) {
-    const auto isOfIt = [&](const ChangedThing& thing) { return thing.object == back.object; };
+  void addWhole(const WholeObject& whole) {
+    const auto isOfIt = [&](const ChangedThing& thing) { return thing.object == whole.object; };
     if (std::none_of(things_.begin(), things_.end(), isOfIt))
-      things_.push_back({back.cluxels, back.object, false, back.box, false});
+      things_.push_back({whole.cluxels, whole.object, false, whole.box, whole.visits});
   }
 
   /// Things of one object are parts of it.
@@ -126,12 +165,29 @@ class Things {
     }
   }
 
-  /// Whether the whole object is absent at the other time. An object without a state counts as such.
-  bool isGoneAsWhole(std::uint32_t object) const {
+  const ObjectStates* statesOf(std::uint32_t object) const {
     const auto states = std::lower_bound(survey_.states.begin(), survey_.states.end(), object,
                                          [](const ObjectStates& a, std::uint32_t b) { return a.object < b; });
-    if (states == survey_.states.end() || states->object != object) return true;
-    return (time_ == kBefore ? states->after : states->before) == perception::PresenceState::Absent;
+    return states == survey_.states.end() || states->object != object ? nullptr : &*states;
+  }
+
+  PresenceState stateAtOtherTime(const ObjectStates& states) const {
+    return time_ == kBefore ? states.after : states.before;
+  }
+
+  /// Whether the object is there at the other time, too, and what the visits with it found at the place of the part, of
+  /// which `votes` tell, does not show that the part is away.
+  bool isHiddenPart(const ObjectStates& object, VisitVotes votes) const {
+    if (stateAtOtherTime(object) != PresenceState::Present) return false;
+    const std::size_t all = votes.size();
+    const auto isWithIt = [&](const perception::ScanVotes& vote) {
+      return std::binary_search(object.visits.begin(), object.visits.end(), static_cast<std::uint32_t>(vote.time_s));
+    };
+    const bool is_known_with_it = std::any_of(object.visits.begin(), object.visits.end(), [&](std::uint32_t visit) {
+      return survey_.visits.isAfter(visit) == (time_ == kBefore);
+    });
+    std::erase_if(votes, [&](const perception::ScanVotes& vote) { return !isWithIt(vote); });
+    return is_known_with_it && votes.size() < all && !isAwayAtEnd(votes);
   }
 
   bool isNearChange(const Eigen::AlignedBox3d& box, std::size_t clusters) const {

@@ -17,8 +17,9 @@ struct ChangedThing {
   std::optional<std::uint32_t> object;  ///< that most of them belong to; absent when most belong to none
   /// That object is not absent as a whole, more of it stays than changed, or other parts of it changed alike.
   bool is_part = false;
-  Eigen::AlignedBox3d box{};    ///< [m, map]
-  bool has_more_parts = false;  ///< other changes of the same kind are of the same object
+  Eigen::AlignedBox3d box{};            ///< [m, map]
+  std::vector<std::uint32_t> visits{};  ///< on which it was surely there (ChangeSurvey::visits), ascending
+  bool has_more_parts = false;          ///< other changes of the same kind are of the same object
 };
 
 /// What vanished and what appeared.
@@ -27,8 +28,10 @@ struct ChangedThings {
 };
 
 /// A thing is a cluster of cluxels that changed alike (clustersOf), or where there is none within 0.3 m, a part of
-/// cluxels (changedParts). Things that stood side by side are told apart (sheetsOf). An object that was there at both
-/// times, but not at the end of one of them, is a thing, too (ChangeSurvey::back).
+/// cluxels (changedParts). Things that stood side by side are told apart (sheetsOf). An object of which neither tells
+/// is a thing, too, when its states do (ChangeSurvey::wholes). No thing is what had left before, or left
+/// again: the last visits of its own time saw through it. Nor is a part of an object that is there at the other time,
+/// too, when only visits without the object saw through the part's place.
 ChangedThings changedThings(const ChangeSurvey& survey);
 
 }  // namespace cluxel::tasks

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "tasks/changes/visit_votes.hpp"
+
 namespace cluxel::tasks {
 
 using perception::PresenceState;
@@ -23,6 +25,14 @@ bool leftOnALaterVisit(std::span<const perception::ScanVotes> votes, const perce
   return false;
 }
 
+/// Whether scans saw through nearly all places of a thing, and hit none.
+bool sawThroughAll(std::span<const perception::ScanVotes> votes, const perception::Visibility& thing) {
+  constexpr double kNearlyAll = 0.9;
+  perception::PlaceSet hit, seen_through;
+  for (const perception::ScanVotes& vote : votes) hit |= vote.hits, seen_through |= vote.seen_through;
+  return hit.none() && static_cast<double>(seen_through.count()) >= kNearlyAll * static_cast<double>(thing.places);
+}
+
 }  // namespace
 
 ObjectStates statesOf(std::uint32_t object, std::span<const perception::ScanVotes> votes, double since_s) {
@@ -34,10 +44,13 @@ ObjectStates statesOf(std::uint32_t object, std::span<const perception::ScanVote
   ObjectStates states;
   states.object = object;
   states.before = stateAfter(before, thing, kParams), states.after = stateAfter(after, thing, kParams);
-  if (states.before == PresenceState::Present && states.after == PresenceState::Absent)
-    states.was_away = leftOnALaterVisit(after, thing, kParams);
-  if (states.before == PresenceState::Absent && states.after == PresenceState::Present)
-    states.was_away = leftOnALaterVisit(before, thing, kParams);
+  const bool left = states.before == PresenceState::Present && states.after == PresenceState::Absent;
+  const bool came = states.before == PresenceState::Absent && states.after == PresenceState::Present;
+  if (left || came) {
+    const auto without_it = left ? after : before, with_it = left ? before : after;
+    states.was_away = leftOnALaterVisit(without_it, thing, kParams);
+    states.is_all_gone = showPresence(with_it, thing, kParams) && sawThroughAll(without_it, thing);
+  }
   states.log_odds_before = logOddsOfPresence(before, thing.share_of_hits, kParams);
   states.log_odds_after = logOddsOfPresence(after, thing.share_of_hits, kParams);
   return states;

@@ -5,13 +5,11 @@
 #include <Eigen/Geometry>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "perception/visibility/presence.hpp"
 
 namespace cluxel::tasks {
-
-/// Scans with a longer pause between them belong to different visits.
-inline constexpr double kPauseOfVisits_s = 1800;
 
 struct ObjectStates {
   std::uint32_t object = 0;  ///< number in MapReader::objects()
@@ -21,9 +19,17 @@ struct ObjectStates {
   /// Present at the end of one time and absent at that of the other, though it was surely there on an earlier visit of
   /// that other time. Scans of one visit that see through a thin thing do not tell that it left.
   bool was_away = false;
+  /// Present at the end of one time and absent at that of the other, which saw through nearly all of it and hit none.
+  bool is_all_gone = false;
+  std::vector<std::uint32_t> visits{};               ///< on which it was surely there, ascending
   Eigen::AlignedBox3d box{};                         ///< of its cluxels [m, map]
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();  ///< of its upright box [m, map]
 };
+
+/// Whether its states tell a change that its cluxels may not tell.
+inline bool changedAsWhole(const ObjectStates& states) {
+  return states.was_away || states.is_all_gone;
+}
 
 /// The states that the votes of scans before `since_s` and from it on tell. `votes` ascend by time.
 ObjectStates statesOf(std::uint32_t object, std::span<const perception::ScanVotes> votes, double since_s);

@@ -68,10 +68,12 @@ bool areOfOneSize(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return true;
 }
 
-/// Whether what vanished may be what appeared: two objects, or parts of such, of one class and nearly one size.
+/// Whether what vanished may be what appeared: two objects, or parts of such, of one class and nearly one size, of
+/// which no visit saw both.
 bool mayBeOne(const mapping::MapReader& map, const ChangedThing& gone, const ChangedThing& come) {
   return gone.object && come.object && gone.object != come.object && !gone.has_more_parts && !come.has_more_parts &&
-         areOfOneSize(gone.box.sizes(), come.box.sizes()) && map.classOf(*gone.object) == map.classOf(*come.object);
+         !haveCommon(gone.visits, come.visits) && areOfOneSize(gone.box.sizes(), come.box.sizes()) &&
+         map.classOf(*gone.object) == map.classOf(*come.object);
 }
 
 /// Pairs what vanished with what appeared, nearest first.
@@ -140,23 +142,36 @@ std::vector<Visit> visitsOf(const std::vector<mapping::Cloud>& clouds) {
   return visits;
 }
 
-SiteChanges changesIn(const mapping::MapReader& map, std::optional<double> since_s, unsigned threads,
+SiteChanges changesIn(const mapping::MapReader& map, const ChangeTimes& times, unsigned threads,
                       std::size_t max_cluxels) {
-  const std::vector<mapping::Cloud> clouds = map.clouds();
-  SiteChanges found;
-  found.since_s = since_s ? *since_s : beginOfLastVisit(clouds);
-  requireBothSides(scanTimes(clouds), found.since_s);
-  ChangeSurvey survey = surveyOf(map, found.since_s, max_cluxels, threads);
+  ComparedTimes compared;
+  compared.from_s = times.from_s.value_or(compared.from_s), compared.until_s = times.until_s.value_or(compared.until_s);
+  const std::vector<mapping::Cloud> clouds = cloudsWithin(map.clouds(), compared);
+  compared.since_s = times.since_s ? *times.since_s : beginOfLastVisit(clouds);
+  requireBothSides(scanTimes(clouds), compared.since_s);
+  ChangeSurvey survey = surveyOf(map, compared, max_cluxels, threads);
+  SiteChanges found{compared.since_s, times.until_s, {}, {}};
   found.changes = withMoves(map, changedThings(survey));
   found.states = std::move(survey.states);
   return found;
 }
 
 std::vector<SiteChanges> changesOfVisits(const mapping::MapReader& map, unsigned threads) {
+  constexpr std::size_t kVisitsBefore = 4;  // so that the cost does not grow with the square of the visits
   const std::vector<Visit> visits = visitsOf(map.clouds());
   std::vector<SiteChanges> found;
-  for (std::size_t i = 1; i < visits.size(); ++i) found.push_back(changesIn(map, visits[i].begin_s, threads));
+  for (std::size_t i = 1; i < visits.size(); ++i)
+    found.push_back(changesIn(map,
+                              {.since_s = visits[i].begin_s,
+                               .until_s = visits[i].end_s,
+                               .from_s = visits[i - std::min(i, kVisitsBefore)].begin_s},
+                              threads));
   return found;
+}
+
+std::string periodText(const SiteChanges& changes) {
+  return "since " + dateTimeText(changes.since_s) +
+         (changes.until_s ? " until " + dateTimeText(*changes.until_s) : std::string());
 }
 
 std::string nameOf(const mapping::MapReader& map, const ChangedThing& thing) {
@@ -210,6 +225,7 @@ double timeNamed(const std::string& text) {
 std::string changesJson(const mapping::MapReader& map, const SiteChanges& found) {
   ChangeJson json{
       {"since", dateTimeText(found.since_s)}, {"changes", ChangeJson::array()}, {"states", ChangeJson::array()}};
+  if (found.until_s) json["until"] = dateTimeText(*found.until_s);
   for (const SiteChange& change : found.changes) {
     ChangeJson entry = thingJson(map, change.thing);
     entry["change"] = nameOf(change.kind);

@@ -31,22 +31,35 @@ struct SiteChange {
 };
 std::string_view nameOf(SiteChange::Kind kind);  ///< "vanished"
 
+/// The times that are asked about [s since 1970].
+struct ChangeTimes {
+  std::optional<double> since_s{};  ///< scans from then on are "after"; absent: the begin of the last visit
+  std::optional<double> until_s{};  ///< later scans do not count
+  std::optional<double> from_s{};   ///< earlier scans do not count
+};
+
 struct SiteChanges {
   double since_s = 0;                ///< scans from this time on are "after"
+  std::optional<double> until_s{};   ///< later scans do not count
   std::vector<ObjectStates> states;  ///< of each object but ground, by number
   std::vector<SiteChange> changes;   ///< by first cluxel
 };
 
-/// Compares the scans before `since_s` (default: the begin of the last visit) with those from it on. What vanished are
-/// clusters of cluxels that rays hit before and see through afterwards; what appeared, the other way round. When an
-/// object vanished, and another of its class and nearly its size appeared within 10 m, it has moved; nearest pairs
-/// first. Throws Error (InvalidArgument) when one side has no scan with time and pose. Cost and memory as for
-/// surveyOf().
-SiteChanges changesIn(const mapping::MapReader& map, std::optional<double> since_s, unsigned threads,
+/// Compares how things were at the end of the scans before `since_s` with how they are at the end of those from it on.
+/// What vanished are clusters of cluxels that rays hit before and see through afterwards; what appeared, the other way
+/// round. What had left before `since_s` has not vanished since, and what came and left again has not appeared. When an
+/// object vanished, and another of its class and nearly its size appeared within 10 m, it has moved, unless one visit
+/// saw both; nearest pairs first. Throws Error (InvalidArgument) when one side has no scan with time and pose. Cost and
+/// memory as for surveyOf().
+SiteChanges changesIn(const mapping::MapReader& map, const ChangeTimes& times, unsigned threads,
                       std::size_t max_cluxels = kRegionCluxels);
 
-/// changesIn for the begin of each visit but the first.
+/// What each visit but the first changed: how things were at the end of the four visits before it, and how that visit
+/// saw them. Cost: that of changesIn() for five visits, for each visit.
 std::vector<SiteChanges> changesOfVisits(const mapping::MapReader& map, unsigned threads);
+
+/// "since 2023-11-15T22:13:20.000000Z", and until when, where that was asked.
+std::string periodText(const SiteChanges& changes);
 
 /// "StreetSign object/0123456789ab", or "part of ...", or "something unnamed".
 std::string nameOf(const mapping::MapReader& map, const ChangedThing& thing);

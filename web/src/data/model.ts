@@ -50,7 +50,7 @@ interface ChangedThing { object: string | null; number: number | null; class: st
 export interface SiteChange extends ChangedThing { change: 'vanished' | 'appeared' | 'moved'; now?: ChangedThing; distance?: number }
 type Presence = 'present' | 'absent' | 'not observed';
 export interface ObjectStates { object: string; number: number; before: Presence; after: Presence }
-/** What the scans since the begin of a visit show against those before it. */
+/** What the scans of a visit show against those of the visits shortly before it. */
 export interface VisitChanges { since: string; changes: SiteChange[]; states: ObjectStates[] }
 /** An earlier object that an object was made of, by which operation and when. */
 export interface Ancestor { from: string; operation: string; time: string }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A slider over visits: what appeared, vanished, moved, and what was not observed again.
+// A slider over visits: what each one found appeared, vanished and moved, and what it did not observe.
 import { capitalised, localName, middleOf, nameOf, OBJECT, type MapModel, type MapObject, type SiteChange, type VisitChanges } from '../data/model';
 import { counted, el, faultNote, rounded, swatch } from '../dom';
 import { cssOf, type Rgb } from '../scene/palette';
@@ -12,7 +12,7 @@ const KINDS: Record<Kind, { colour: Rgb; label: string }> = {
   appeared: { colour: [0, 114, 178], label: 'appeared' },
   vanished: { colour: [213, 94, 0], label: 'vanished' },
   moved: { colour: [230, 159, 0], label: 'moved' },
-  unobserved: { colour: [204, 121, 167], label: 'not observed again' },
+  unobserved: { colour: [204, 121, 167], label: 'not observed' },
 };
 
 export class VisitPanel {
@@ -81,7 +81,7 @@ export class VisitPanel {
   }
 
   private showChanges(found: VisitChanges): void {
-    const tints = new Map<number, Rgb>(), unseen = found.states.filter((states) => states.after === 'not observed');
+    const tints = new Map<number, Rgb>(), unseen = found.states.filter((states) => states.before === 'present' && states.after === 'not observed');
     for (const states of unseen) tints.set(states.number, KINDS.unobserved.colour);
     for (const change of found.changes)
       for (const thing of [change, change.now])
@@ -96,7 +96,7 @@ export class VisitPanel {
       el('ul', { class: 'labels visit-kinds' }, ...(Object.keys(KINDS) as Kind[]).map((kind) =>
         el('li', { 'data-kind': kind }, swatch(cssOf(KINDS[kind].colour)), `${KINDS[kind].label}: `, el('b', {}, counted(count(kind)))))),
       el('ol', { class: 'change-list' }, ...found.changes.map((change) => el('li', {}, this.button(change)))),
-      unseen.length === 0 ? '' : el('details', {}, el('summary', {}, 'Not observed again'),
+      unseen.length === 0 ? '' : el('details', {}, el('summary', {}, 'Not observed on this visit'),
         el('ul', { class: 'change-list' }, ...unseen.map((states) => el('li', {}, this.objectButton(states.number))))));
   }
 

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+// The rules of presence (perception/visibility/presence), with visits in the place of scans.
+#include "tasks/changes/visit_votes.hpp"
+
+#include <algorithm>
+
+namespace cluxel::tasks {
+
+namespace {
+
+constexpr perception::PresenceParams kPresence;
+
+}  // namespace
+
+Visits::Visits(std::span<const double> times_s, double since_s) : since_s_(since_s) {
+  for (std::size_t i = 0; i < times_s.size(); ++i) {
+    const bool begins =
+        i == 0 || times_s[i] - times_s[i - 1] > kPauseOfVisits_s || (times_s[i - 1] < since_s && times_s[i] >= since_s);
+    if (begins) begins_s_.push_back(times_s[i]);
+    of_scan_.push_back(static_cast<std::uint32_t>(begins_s_.size() - 1));
+  }
+}
+
+std::uint32_t Visits::at(double time_s) const {
+  const auto next = std::upper_bound(begins_s_.begin(), begins_s_.end(), time_s);
+  return static_cast<std::uint32_t>(next - begins_s_.begin() - 1);
+}
+
+void VoteOfPlaces::addPlace(const ScanNumbers& hits, const ScanNumbers& passed) {
+  const std::size_t votes = std::min(places_, perception::kMaxPlaces);
+  const std::size_t place = added_++ * votes / places_;
+  hits.forEach([&](std::uint32_t scan) { of_visit_[visits_.ofScan(scan)].hits.set(place); });
+  passed.forEach([&](std::uint32_t scan) { of_visit_[visits_.ofScan(scan)].seen_through.set(place); });
+}
+
+VisitVotes VoteOfPlaces::take() {
+  VisitVotes votes;
+  for (auto& [visit, vote] : of_visit_) {
+    vote.time_s = visit;
+    addVotes(votes, vote);
+  }
+  return votes;
+}
+
+VisitVotes votesByVisit(std::span<const perception::ScanVotes> votes, const Visits& visits) {
+  VisitVotes merged;
+  for (perception::ScanVotes vote : votes) {
+    vote.time_s = visits.at(vote.time_s);
+    addVotes(merged, vote);
+  }
+  return merged;
+}
+
+std::vector<std::uint32_t> visitsWithIt(const VisitVotes& votes) {
+  const double share_of_hits = perception::shareOfHits(votes);
+  std::vector<std::uint32_t> visits;
+  for (std::size_t i = 0; i < votes.size(); ++i)
+    if (logOddsOfPresence(std::span(votes).subspan(i, 1), share_of_hits, kPresence) >= kPresence.decided)
+      visits.push_back(static_cast<std::uint32_t>(votes[i].time_s));
+  return visits;
+}
+
+bool isAwayAtEnd(const VisitVotes& votes) {
+  return stateAfter(votes, perception::visibilityOf(votes), kPresence) == perception::PresenceState::Absent;
+}
+
+bool haveCommon(std::span<const std::uint32_t> ascending, std::span<const std::uint32_t> others) {
+  return std::any_of(others.begin(), others.end(), [&](std::uint32_t visit) {
+    return std::binary_search(ascending.begin(), ascending.end(), visit);
+  });
+}
+
+}  // namespace cluxel::tasks

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// What visits tell of a thing: on which it was there, and whether it was away at the end of some of them.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <span>
+#include <vector>
+
+#include "perception/visibility/presence.hpp"
+#include "tasks/changes/scan_numbers.hpp"
+
+namespace cluxel::tasks {
+
+/// Scans with a longer pause between them belong to different visits.
+inline constexpr double kPauseOfVisits_s = 1800;
+
+/// The visits of scans with a time and a pose. A visit ends where the times that are compared meet.
+class Visits {
+ public:
+  Visits() = default;
+  /// `times_s`: of the scans, ascending. `since_s`: scans from then on are of later visits.
+  Visits(std::span<const double> times_s, double since_s);
+  std::uint32_t ofScan(std::uint32_t scan) const { return of_scan_[scan]; }
+  std::uint32_t at(double time_s) const;  ///< of a scan with this time
+  bool isAfter(std::uint32_t visit) const { return begins_s_[visit] >= since_s_; }
+
+ private:
+  double since_s_ = 0;
+  std::vector<double> begins_s_;
+  std::vector<std::uint32_t> of_scan_;
+};
+
+/// One vote a visit, by its number; scans of one visit speak together.
+using VisitVotes = std::vector<perception::ScanVotes>;
+
+/// Gathers what scans found at the places of a thing.
+class VoteOfPlaces {
+ public:
+  VoteOfPlaces(const Visits& visits, std::size_t places) : visits_(visits), places_(places) {}
+  /// Places are added in their order. `hits` outweigh `passed` within a visit.
+  void addPlace(const ScanNumbers& hits, const ScanNumbers& passed);
+  VisitVotes take();
+
+ private:
+  const Visits& visits_;
+  std::size_t places_, added_ = 0;
+  std::map<std::uint32_t, perception::ScanVotes> of_visit_;
+};
+
+/// Merges votes of scans, which ascend by time.
+VisitVotes votesByVisit(std::span<const perception::ScanVotes> votes, const Visits& visits);
+
+/// The visits on which the thing was surely there, ascending.
+std::vector<std::uint32_t> visitsWithIt(const VisitVotes& votes);
+
+/// Whether the last of the visits show that the thing had left after it was there.
+bool isAwayAtEnd(const VisitVotes& votes);
+
+bool haveCommon(std::span<const std::uint32_t> ascending, std::span<const std::uint32_t> others);
+
+}  // namespace cluxel::tasks

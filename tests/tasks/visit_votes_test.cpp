@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+// Visits of scans, and what they tell of a thing.
+#include "tasks/changes/visit_votes.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tasks/changes/object_states.hpp"
+
+namespace cluxel::tasks {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+ScanNumbers scans(std::initializer_list<std::uint32_t> numbers) {
+  ScanNumbers set;
+  for (const std::uint32_t number : numbers) set.insert(number);
+  return set;
+}
+
+TEST(Visits, EndWithAPauseAndWhereTheTimesMeet) {
+  const std::vector<double> times_s{0, 60, 4000, 4060, 4120};
+  const Visits visits(times_s, 4060);
+  EXPECT_EQ(visits.ofScan(1), 0U);
+  EXPECT_EQ(visits.ofScan(2), 1U);
+  EXPECT_EQ(visits.ofScan(3), 2U);
+  EXPECT_EQ(visits.at(4120), 2U);
+  EXPECT_FALSE(visits.isAfter(1));
+  EXPECT_TRUE(visits.isAfter(2));
+}
+
+/// Scans 0 and 1 are of the first visit, scan 2 of the second, scan 3 of the third.
+const Visits& threeVisits() {
+  static const Visits visits(std::vector<double>{0, 60, 4000, 8000}, 8000);
+  return visits;
+}
+
+VisitVotes votesOf(std::size_t places, const ScanNumbers& hits, const ScanNumbers& passed) {
+  VoteOfPlaces votes(threeVisits(), places);
+  for (std::size_t i = 0; i < places; ++i) votes.addPlace(hits, passed);
+  return votes.take();
+}
+
+TEST(VoteOfPlaces, TellsOnWhichVisitsAThingWasThere) {
+  EXPECT_THAT(visitsWithIt(votesOf(20, scans({0, 2}), scans({3}))), ElementsAre(0, 1));
+  EXPECT_THAT(visitsWithIt(votesOf(2, scans({}), scans({3}))), IsEmpty());
+}
+
+TEST(VoteOfPlaces, AnotherScanOfTheVisitThatPassesDoesNotTellThatItLeft) {
+  EXPECT_FALSE(isAwayAtEnd(votesOf(20, scans({0}), scans({1}))));
+  EXPECT_TRUE(isAwayAtEnd(votesOf(20, scans({0}), scans({1, 2}))));
+  EXPECT_FALSE(isAwayAtEnd(votesOf(20, scans({0, 3}), scans({2})))) << "it came back";
+}
+
+TEST(VoteOfPlaces, TakesAnyNumberOfPlaces) {
+  for (const std::size_t places : {1U, 255U, 256U, 257U, 5000U}) {
+    const VisitVotes votes = votesOf(places, scans({0}), scans({2}));
+    ASSERT_EQ(votes.size(), 2U);
+    EXPECT_EQ(votes[0].hits.count(), std::min<std::size_t>(places, perception::kMaxPlaces));
+  }
+}
+
+TEST(ObjectStates, OneLaterScanTellsThatAllOfAThingIsGone) {
+  const auto vote = [](double time_s, std::size_t hits, std::size_t seen_through) {
+    perception::ScanVotes scan;
+    scan.time_s = time_s;
+    for (std::size_t i = 0; i < hits; ++i) scan.hits.set(i);
+    for (std::size_t i = 0; i < seen_through; ++i) scan.seen_through.set(hits + i);
+    return scan;
+  };
+  const auto isAllGone = [&](std::size_t hits, std::size_t seen_through) {
+    const std::vector<perception::ScanVotes> votes{vote(0, 100, 0), vote(4000, hits, seen_through)};
+    return statesOf(0, votes, 4000).is_all_gone;
+  };
+  EXPECT_TRUE(isAllGone(0, 95));
+  EXPECT_FALSE(isAllGone(0, 60)) << "a scan sees through many places of a crown";
+  EXPECT_FALSE(isAllGone(3, 95)) << "some of it is left";
+}
+
+}  // namespace
+}  // namespace cluxel::tasks
