@@ -5,8 +5,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <functional>
+
 #include "cluxel/error.hpp"
 #include "mapping/build/operator_statements.hpp"
+#include "mapping/change/map_change.hpp"
 #include "mapping/change/map_merge.hpp"
 #include "mapping/change/map_update.hpp"
 #include "mapping/change/statement_change.hpp"
@@ -109,6 +112,44 @@ TEST_F(StatementHistory, WhatWasStatedAgainAfterItsWithdrawalStays) {
   state(older, {sign});
   EXPECT_THAT(statementsOf(merged(withdrawn, older, notes)), UnorderedElementsAre(sign.id()));
   EXPECT_EQ(notes.all.find("left out"), std::string::npos);
+}
+
+TEST_F(StatementHistory, OfMapsWhoseRulesDecideAlikeIsMergedInAnyOrder) {
+  MapInputs other = *inputs;
+  std::string& text = other.rules.front().text;
+  const std::string number = "machine_made: [ height >= 3 m";
+  text.replace(text.find(number), number.size(), "machine_made: [ height >= 3.0001 m");
+  const Statement bush = about(0, StatementKind::Is, "Bush");
+  const fs::path plain = copied("plain"), changed = copied("changed");
+  applyInputs(
+      changed, [&](const MapInputs&) { return other; }, {}, silence());
+  const fs::path unstated = map("unstated");
+  fs::copy_file(changed, unstated);
+  const auto expectSame = [&](const fs::path& last, const std::function<void(const fs::path&)>& change) {
+    buildMap(scansOf(campus->files()), other, map("scratch"), {}, silence());
+    change(map("scratch"));
+    for (const bool is_first : {true, false}) {
+      const std::vector<MapToMerge> maps =
+          is_first ? std::vector<MapToMerge>{{last}, {plain}} : std::vector<MapToMerge>{{plain}, {last}};
+      mergeMaps(maps, map("all"), {.change = {}, .use = is_first ? 0 : 1, .force = true}, silence());
+      EXPECT_TRUE(canonicalText(map("all")) == canonicalText(map("scratch"))) << last << is_first;
+      EXPECT_EQ(knownStatements(MapReader(map("all")).quads()).size(), statementsOf(last).size());
+      for (const KnownStatement& known : knownStatements(MapReader(map("all")).quads()))
+        EXPECT_EQ(known.effect, nameOf(StatementEffect::Applied));
+    }
+    fs::remove(map("scratch"));
+  };
+  state(changed, {bush});
+  expectSame(changed, [&](const fs::path& file) { state(file, {bush}); });
+  const std::string tree = "INSERT DATA { <http://e/a> a <" + vocabulary::clx("Tree") + "> }";
+  updateMap(unstated, tree, {}, silence());
+  expectSame(unstated, [&](const fs::path& file) { updateMap(file, tree, {}, silence()); });
+  state(plain, {bush});
+  fs::copy_file(plain, unstated, fs::copy_options::overwrite_existing);
+  applyInputs(
+      unstated, [&](const MapInputs&) { return other; }, {}, silence());
+  state(unstated, {}, {bush.id()});
+  expectSame(unstated, [](const fs::path&) {});
 }
 
 TEST_F(StatementHistory, AnUpdateWithdrawsToo) {

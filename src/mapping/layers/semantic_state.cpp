@@ -96,6 +96,10 @@ bool areSame(const std::vector<SeenCloud>& a, const std::vector<SeenCloud>& b) {
   });
 }
 
+bool haveSameSources(const SemanticState& a, const SemanticState& b) {
+  return a.statements == b.statements && areSame(a.clouds, b.clouds);
+}
+
 bool haveOtherTimes(const std::vector<SeenCloud>& before, const std::vector<SeenCloud>& now) {
   std::map<ContentHash, std::optional<double>> times;
   for (const SeenCloud& cloud : before) times.emplace(cloud.id, cloud.time_s);

@@ -32,6 +32,8 @@ struct SemanticState {
   std::vector<ContentHash> statements;  ///< of operators, ascending by id
   std::vector<SeenCloud> clouds;        ///< ascending by id
 };
+/// Whether two states follow from the same clouds, poses, times and statements.
+bool haveSameSources(const SemanticState& a, const SemanticState& b);
 
 void storeSemanticState(rdf::WriteTransaction& transaction, const SemanticState& state);
 /// Absent in a map of which these layers were never made.

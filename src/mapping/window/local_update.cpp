@@ -88,7 +88,7 @@ class LocalUpdate {
       reach_m_ = std::max(reach_m_, other->former_reach_m);  // beyond a seam both runs must be the same
       decided_otherwise_ = other->tiles;
       changes_.tiles.insert(other->tiles.begin(), other->tiles.end());
-      if (changes_.tiles.empty()) return unchanged();
+      if (changes_.tiles.empty() && haveSameSources(now_, before_)) return unchanged();
     }
     if (lent_ != nullptr) {
       more_ = lent_->tilesOfWide();

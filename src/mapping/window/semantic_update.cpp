@@ -9,6 +9,7 @@
 #include "mapping/strips/whole_update.hpp"
 #include "mapping/window/lent_decisions.hpp"
 #include "mapping/window/local_update.hpp"
+#include "rdf/store/quad_journal.hpp"
 
 namespace cluxel::mapping {
 
@@ -17,6 +18,12 @@ namespace {
 bool hasOtherInference(const rdf::ReadTransaction& transaction, const MapInputs& inputs) {
   const MapInputs before = storedInputs(transaction);
   return before.ontology != inputs.ontology || before.sparql_rules != inputs.sparql_rules;
+}
+
+/// Whether quads came or went since the last inference, as those of graph operator of a map that was merged.
+bool hasOtherQuads(const rdf::WriteTransaction& transaction) {
+  const auto change = rdf::changesOf(transaction);
+  return !change || !change->added.empty() || !change->removed.empty();
 }
 
 }  // namespace
@@ -47,7 +54,9 @@ SemanticUpdate updateSemanticLayer(rdf::WriteTransaction& transaction, const Par
   if (infers_otherwise) writeOntology(transaction, parsed.inputs);
   if (inputs == ChangedInputs::Scans || inputs == ChangedInputs::Rules)
     if (auto update = updateAround(work, changes, inputs, lent ? &*lent : nullptr, nullptr)) {
-      if (infers_otherwise && update->tiles_decided == 0) inferFacts(transaction, parsed.inputs, sink, check);
+      const bool may_infer_otherwise =
+          infers_otherwise || (inputs == ChangedInputs::Rules && hasOtherQuads(transaction));
+      if (may_infer_otherwise && update->tiles_decided == 0) inferFacts(transaction, parsed.inputs, sink, check);
       update->took_decisions = lent.has_value();
       if (changes.has_copied_map) eraseRowsWithoutObject(transaction);
       return *std::move(update);
