@@ -8,6 +8,7 @@
 #include "mapping/statements/applied_statements.hpp"
 #include "mapping/thing_history.hpp"
 #include "rdf/map_iris.hpp"
+#include "tasks/gone_things.hpp"
 #include "tasks/thing_names.hpp"
 
 namespace cluxel::tasks {
@@ -26,6 +27,10 @@ std::string historyOf(const mapping::MapReader& map, const ContentHash& object, 
   const std::string thing = things.empty() ? rdf::iriOfThing(object) : things.front().iri;
   json["thing"] = thing;
   std::string text = "thing/" + mapping::localName(thing) + "\n";
+  if (const auto gone = seenThrough(map.quads(), rdf::iriOfObject(object))) {
+    json["seenThrough"] = *gone;
+    text += "gone: a scan at " + *gone + " saw through its place\n";
+  }
   for (const mapping::KnownStatement& known : mapping::knownStatements(map.quads())) {
     if (known.object != rdf::iriOfObject(object)) continue;
     json["stated"].push_back({{"statement", known.statement.id().hex()},

@@ -11,7 +11,7 @@
 
 namespace cluxel::tasks {
 
-/// The object's thing, and what operators state about it. Adds the same to `json`.
+/// The object's thing, whether it is gone, and what operators state about it. Adds the same to `json`.
 std::string historyOf(const mapping::MapReader& map, const ContentHash& object, nlohmann::ordered_json& json);
 
 /// What operators made of an object, as the rules made it: another one, or none. Empty when they left it. Adds the same

@@ -64,7 +64,7 @@ void expectWithin(const ResultTable& rows, const std::string& column, double min
 }
 
 TEST(QuestionsOfACampus, EveryColumnHoldsWhatItsUnitSays) {
-  const std::set<std::string> optional{"headHeight", "trunkWidth"};
+  const std::set<std::string> optional{"headHeight", "trunkWidth", "seenThrough"};
   for (const Question& question : shippedQuestions(DataHome(test::sourceFolder()))) {
     const ResultTable rows = campus().answer(question.file.stem());
     EXPECT_GT(rows.row_count, 0U) << question.file << " has no answer on a campus";
@@ -77,6 +77,8 @@ TEST(QuestionsOfACampus, EveryColumnHoldsWhatItsUnitSays) {
           EXPECT_TRUE(optional.contains(column.name)) << question.file << " " << column.name << " is unbound";
         } else if (column.unit == "IRI") {
           EXPECT_EQ(cell->kind, TermKind::Iri) << question.file << " " << column.name;
+        } else if (column.unit == "time") {
+          EXPECT_EQ(cell->datatype, "http://www.w3.org/2001/XMLSchema#dateTime") << question.file << " " << column.name;
         } else if (column.unit != "text") {
           EXPECT_TRUE(std::isfinite(numberAt(rows, i, column.name))) << question.file << " " << column.name;
         }

@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "mapping/map_reader.hpp"
+#include "tasks/gone_things.hpp"
 
 namespace cluxel::serve {
 
@@ -34,7 +35,7 @@ void addExtent(ObjectJson& json, const Extent& extent) {
 
 }  // namespace
 
-ObjectJson objectJson(const Object& object) {
+ObjectJson objectJson(const Object& object, const rdf::QuadReader& quads) {
   ObjectJson json{{"id", mapping::localName(object.iri)},
                   {"iri", object.iri},
                   {"number", object.number},
@@ -45,6 +46,7 @@ ObjectJson objectJson(const Object& object) {
                   {"rule", object.rule},
                   {"heading", object.heading_rad}};
   addExtent(json, object);
+  if (const auto gone = tasks::seenThrough(quads, object.iri)) json["seenThrough"] = *gone;
   json["parts"] = ObjectJson::array();
   for (const ObjectPart& part : object.parts) {
     ObjectJson entry{{"iri", part.iri}, {"class", mapping::localName(part.class_iri)}, {"label", part.label}};

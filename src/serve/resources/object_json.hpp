@@ -7,12 +7,14 @@
 
 #include "cluxel/object.hpp"
 #include "cluxel/point_cloud.hpp"
+#include "rdf/store/quad_store.hpp"
 
 namespace cluxel::serve {
 
 using ObjectJson = nlohmann::ordered_json;
 
-ObjectJson objectJson(const Object& object);
+/// With what the map tells of the object beside its measures: whether it is gone.
+ObjectJson objectJson(const Object& object, const rdf::QuadReader& quads);
 /// One array for each of x, y, z, label, and intensity when all scans have it.
 ObjectJson pointsJson(const PointCloud& points);
 /// A coordinate with three decimals.

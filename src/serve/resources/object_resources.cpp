@@ -133,7 +133,7 @@ HttpResponse answerObjects(const ServedMap& map, const ResourceRequest& asked) {
   const std::vector<const Object*> objects = selected(*table, parameters);
   ObjectJson json{{"total", objects.size()}, {"offset", offset}, {"objects", ObjectJson::array()}};
   for (std::size_t i = offset; i < objects.size() && i - offset < limit; ++i)
-    json["objects"].push_back(objectJson(*objects[i]));
+    json["objects"].push_back(objectJson(*objects[i], map.quads()));
   if (limit > 0 && offset < objects.size() && objects.size() - offset > limit) json["nextOffset"] = offset + limit;
   return jsonResponse(json, asked.limits);
 }
@@ -142,7 +142,7 @@ HttpResponse answerObject(const ServedMap& map, const ResourceRequest& asked, co
   requireKnown(asked.target.parameters, {});
   const auto table = objectsOf(map.quads());
   const Object& object = objectNamed(*table, map.quads(), id);
-  ObjectJson json = objectJson(object);
+  ObjectJson json = objectJson(object, map.quads());
   const auto things = mapping::storedThings(map.quads());
   json["thing"] = thingOf(things, ContentHash::fromHex(hashOf(object.iri))).iri;
   return jsonResponse(json, asked.limits);

@@ -11,6 +11,7 @@
 #include "rdf/map_iris.hpp"
 #include "rdf/ontology/ontology.hpp"
 #include "tasks/export/proj_geo_reference.hpp"
+#include "tasks/gone_things.hpp"
 
 namespace cluxel::tasks {
 
@@ -50,19 +51,22 @@ Json polygonJson(const std::vector<Eigen::Vector2d>& hull, const PlaceWriter& po
   return {{"type", "Polygon"}, {"coordinates", Json::array({ring})}};
 }
 
-Json propertiesOf(const rules::SemanticObject& object, std::size_t number, const perception::SceneCluxels& cluxels,
+Json propertiesOf(const rules::SemanticObject& object, std::size_t number, const mapping::MapReader& map,
                   const rdf::OntologyView& ontology) {
   const rdf::OntologyClass* known = ontology.find(object.class_iri);
   const std::string class_name = mapping::localName(object.class_iri);
-  const perception::UprightBox box = mapping::geometryOf(cluxels, mapping::cluxelsOf(object)).box;
-  return {{"label", known == nullptr ? class_name : known->label()},
-          {"class", class_name},
-          {"height", rounded(box.size.z(), kPerMetre)},
-          {"width", rounded(box.size.y(), kPerMetre)},
-          {"confidence", rounded(object.confidence, kPerMetre)},
-          {"iri", rdf::iriOfObject(object.id)},
-          {"rule", object.rule_id},
-          {"number", number}};
+  const perception::UprightBox box = mapping::geometryOf(map.scene().cluxels, mapping::cluxelsOf(object)).box;
+  const std::string iri = rdf::iriOfObject(object.id);
+  Json json{{"label", known == nullptr ? class_name : known->label()},
+            {"class", class_name},
+            {"height", rounded(box.size.z(), kPerMetre)},
+            {"width", rounded(box.size.y(), kPerMetre)},
+            {"confidence", rounded(object.confidence, kPerMetre)},
+            {"iri", iri},
+            {"rule", object.rule_id},
+            {"number", number}};
+  if (const auto gone = seenThrough(map.quads(), iri)) json["seenThrough"] = *gone;
+  return json;
 }
 
 }  // namespace
@@ -95,7 +99,7 @@ void writeFootprints(const mapping::MapReader& map, ExportFrame frame, const Byt
     features.push_back({{"type", "Feature"},
                         {"id", object.id.hex()},
                         {"geometry", polygonJson(footprintOf(object, cluxels), position)},
-                        {"properties", propertiesOf(object, i, cluxels, ontology)}});
+                        {"properties", propertiesOf(object, i, map, ontology)}});
   }
   Json collection{{"type", "FeatureCollection"}};
   if (frame == ExportFrame::Local) {

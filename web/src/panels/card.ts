@@ -39,10 +39,11 @@ export class ObjectCard {
     this.element.hidden = object === null;
     if (!object) return;
     const facts = el('div', { class: 'facts' }), reasons = el('div', { class: 'reasons' }), position = el('dd', { 'data-measure': 'position' }, '…');
+    const gone = el('p', { class: 'note', 'data-gone': '', hidden: true });
     const picture = el('canvas', { class: 'portrait', role: 'img', 'aria-label': `Points of ${object.class.label}` });
     this.picture = picture;
     this.drawSoon(picture, object);
-    this.element.replaceChildren(this.head(object), picture, this.measures(object, position), this.parts(object), reasons,
+    this.element.replaceChildren(this.head(object), gone, picture, this.measures(object, position), this.parts(object), reasons,
                                  el('details', { ontoggle: (event: Event) => {
                                    if ((event.target as HTMLDetailsElement).open) void this.fillFacts(object, facts);
                                  } }, el('summary', {}, 'All facts and observations'), facts),
@@ -50,6 +51,7 @@ export class ObjectCard {
     this.element.scrollTop = 0;
     void this.fillReasons(object, reasons);
     void this.fillPosition(object, position);
+    void this.fillGone(object, gone);
   }
 
   /** After the view has shown the selection: reading a picture back waits for the graphics. */
@@ -92,6 +94,14 @@ export class ObjectCard {
     } catch (fault) {
       host.replaceChildren(faultNote(fault));
     }
+  }
+
+  /** Later scans may show that it is there no more; a fault of the engine is told at the position. */
+  private async fillGone(object: MapObject, host: HTMLElement): Promise<void> {
+    const answer = await this.engine.ask(`PREFIX clx: <${CLX}> SELECT ?time { <${object.iri}> clx:seenThrough ?time } LIMIT 1`).catch(() => null);
+    const time = (answer as Rows | null)?.rows[0]?.[0]?.value;
+    host.hidden = time === undefined;
+    host.textContent = time === undefined ? '' : `Gone: a scan at ${time} saw through its place.`;
   }
 
   private parts(object: MapObject): HTMLElement | string {
