@@ -65,9 +65,27 @@ test('the points of one visit are shown alone', async () => {
   await toVisit(page, 1);
   await page.check('#visit-points');
   const visits = await page.evaluate(() => window.cluxelPage.model.values.visits.map((visit) => visit.scans));
-  assert.deepEqual(await state(page, 'scans'), [visits[0], visits[0] + visits[1] - 1]);
+  const from = visits[0], to = visits[0] + visits[1] - 1;
+  assert.deepEqual(await state(page, 'scans'), [from, to]);
+  const legend = () => page.evaluate(() => [document.querySelector('#first-scan').closest('fieldset').querySelector('output').textContent,
+                                            document.querySelector('#first-scan').value, document.querySelector('#last-scan').value]);
+  const last = visits.reduce((sum, scans) => sum + scans, 0) - 1;
+  assert.deepEqual(await legend(), [`${from + 1} to ${to + 1} of ${last + 1}`, String(from), String(to)]);
   await toVisit(page, 0);
   assert.equal(await state(page, 'scans'), null);
+  assert.deepEqual(await legend(), ['all', '0', String(last)]);
+});
+
+test('the card of a thing that is gone says so', async () => {
+  const { page } = open;
+  const gone = cluxel('query', map, '-e', 'SELECT ?o ?t { ?o clx:seenThrough ?t } ORDER BY ?o LIMIT 1', '--format', 'csv');
+  const [iri, time] = gone.trim().split(/\r?\n/)[1].split(',');
+  await page.evaluate((name) => {
+    const { model, store } = window.cluxelPage;
+    store.set('selected', model.objects.find((object) => object.iri === name));
+  }, iri);
+  await page.waitForSelector('[data-gone]:visible');
+  assert.ok((await page.textContent('[data-gone]')).startsWith(`Gone: a scan at ${time.slice(0, 19)}`));
 });
 
 test('a fault takes the colours of the visit before away', async () => {

@@ -80,17 +80,24 @@ export class Legend {
     return el('fieldset', { class: 'heights' }, el('legend', {}, 'Heights above ground ', text), low, high);
   }
 
-  /** Two sliders choose the scans whose points are shown. */
+  /** Two sliders choose the scans whose points are shown. They follow what else chooses, as the visits do. */
   private scans(): HTMLElement {
     const { clouds } = this.model.values, last = clouds.length - 1, text = el('output', { class: 'count' }, 'all');
     const name = (number: number) => clouds[number].source || String(number + 1);
     const slider = (id: string, label: string, value: number) =>
       el('input', { type: 'range', id, min: 0, max: last, step: 1, value, 'aria-label': label, oninput: () => {
-        const from = Math.min(Number(low.value), Number(high.value)), to = Math.max(Number(low.value), Number(high.value));
-        text.textContent = from === 0 && to === last ? 'all' : from === to ? name(from) : `${from + 1} to ${to + 1} of ${last + 1}`;
+        const [from, to] = chosen();
         this.store.set('scans', from === 0 && to === last ? null : [from, to]);
       } });
     const low = slider('first-scan', 'First scan', 0), high = slider('last-scan', 'Last scan', last);
+    const chosen = () => [Math.min(Number(low.value), Number(high.value)), Math.max(Number(low.value), Number(high.value))];
+    this.store.on(['scans'], ({ scans }) => {
+      const [from, to] = scans ?? [0, last];
+      text.textContent = from === 0 && to === last ? 'all' : from === to ? name(from) : `${from + 1} to ${to + 1} of ${last + 1}`;
+      if (chosen()[0] === from && chosen()[1] === to) return;  // a slider may have passed the other
+      low.value = String(from);
+      high.value = String(to);
+    });
     return el('fieldset', { class: 'heights' }, el('legend', {}, 'Scans, by time ', text), low, high);
   }
 
