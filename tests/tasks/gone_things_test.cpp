@@ -13,7 +13,9 @@
 #include <vector>
 
 #include "rdf/map_iris.hpp"
+#include "rdf/vocabulary.hpp"
 #include "sparql/query_engine.hpp"
+#include "tasks/ask/inventory_task.hpp"
 #include "tasks/box_visits.hpp"
 #include "tasks/explanation.hpp"
 #include "tasks/export/map_export.hpp"
@@ -25,15 +27,17 @@ namespace {
 using ::testing::HasSubstr;
 using Json = nlohmann::json;
 
-/// Two cars side by side on the first visit, of which one has left on the second.
+/// Three cars in a row on the first visit, of which one has left on the second.
 class GoneThings : public testing::Test {
  protected:
   static void SetUpTestSuite() {
     const Box north = boxFrom({-15, 10, 0}, {15, 10.5, 5}), south = boxFrom({-15, -12.5, 0}, {15, -12, 5});
     const Box stays = boxFrom({-5, 4, 0.25}, {-0.8, 5.8, 1.5}), leaves = boxFrom({2, 4, 0.25}, {6.2, 5.8, 1.5});
+    const Box stays_too = boxFrom({8.5, 4, 0.25}, {12.7, 5.8, 1.5});
     const std::vector<Eigen::Vector3d> sensors{{-3, 0, 1.8}, {1, -1, 1.8}, {5, 0, 1.8}, {8, 1, 1.8}};
     folder = new rdf::ScratchFolder;
-    writeVisits({{{north, south, stays, leaves}, sensors}, {{north, south, stays}, sensors}}, folder->path() / "scans");
+    writeVisits({{{north, south, stays, stays_too, leaves}, sensors}, {{north, south, stays, stays_too}, sensors}},
+                folder->path() / "scans");
     mapping::buildMap(mapping::scansOf({folder->path() / "scans"}), mapping::shippedInputs(),
                       folder->path() / "map.clx", {}, mapping::silence());
     map.emplace(folder->path() / "map.clx");
@@ -91,6 +95,23 @@ TEST_F(GoneThings, AreCountedBesideTheOthersOfTheirClass) {
   std::size_t all = 0;
   for (std::size_t row = 0; row < table.row_count; ++row) all += std::stoul(textOf(table.at(row, column("gone"))));
   EXPECT_EQ(all, 1U);
+}
+
+TEST_F(GoneThings, LeaveNoRowOfTwoInInventories) {
+  const rdf::QuadReader& quads = map->quads();
+  const std::string row = "ASK { ?row a <" + rdf::vocabulary::clx("ParkingRow") + "> ; <" +
+                          rdf::vocabulary::clx("hasMember") + "> <" + gone + "> }";
+  ASSERT_TRUE(sparql::evaluateQuery(quads, row, {}).boolean) << "the rules make one of all three";
+  InventoryParams rows{.classes = {}};
+  rows.with_sidewalks = false;
+  const std::vector<std::string> left_out{"without 1 objects of all classes that later scans show to be gone",
+                                          "without 1 parking rows of which fewer than three vehicles are left"};
+  const TaskAnswer inventory = inventoryAnswer(*map, rows, {});
+  EXPECT_TRUE(inventory.rows.empty());
+  EXPECT_EQ(inventory.notes, left_out);
+  const TaskAnswer compared = registerAnswer(*map, rows, {}, {});
+  EXPECT_TRUE(compared.rows.empty());
+  EXPECT_THAT(compared.notes, testing::IsSupersetOf(left_out));
 }
 
 TEST_F(GoneThings, AreMarkedInFootprintsAndExplanations) {

@@ -199,6 +199,17 @@ std::optional<std::string> noteOfMissingRules(const mapping::MapReader& map, con
          "rules/ that end in .rq to the map";
 }
 
+/// Tells how much is left out, because later scans show it to be gone.
+void addNotesOfGone(const mapping::MapReader& map, bool with_rows, TaskAnswer& answer) {
+  const std::vector<bool> is_gone = goneAmong(map);
+  if (const auto gone = std::count(is_gone.begin(), is_gone.end(), true); gone > 0)
+    answer.notes.push_back("without " + std::to_string(gone) +
+                           " objects of all classes that later scans show to be gone");
+  if (const std::size_t broken = with_rows ? brokenParkingRows(map) : 0; broken > 0)
+    answer.notes.push_back("without " + std::to_string(broken) +
+                           " parking rows of which fewer than three vehicles are left");
+}
+
 /// Which of the places that rules derive a register asks for.
 InventoryParams placesAmong(const std::vector<RegisterEntry>& entries) {
   const auto names = [&](const char* place) {
@@ -227,10 +238,7 @@ TaskAnswer inventoryAnswer(const mapping::MapReader& map, const InventoryParams&
   for (const auto& [kind, count] : counts) note += (note.empty() ? "" : ", ") + std::to_string(count) + " " + kind;
   if (!note.empty()) answer.notes.push_back(note);
   if (const auto missing = noteOfMissingRules(map, params)) answer.notes.push_back(*missing);
-  const std::vector<bool> is_gone = goneAmong(map);
-  if (const auto gone = std::count(is_gone.begin(), is_gone.end(), true); gone > 0)
-    answer.notes.push_back("without " + std::to_string(gone) +
-                           " objects of all classes that later scans show to be gone");
+  addNotesOfGone(map, params.with_rows, answer);
   return answer;
 }
 
@@ -263,7 +271,9 @@ TaskAnswer registerAnswer(const mapping::MapReader& map, const InventoryParams& 
   std::string note;
   for (const auto& [status, count] : counts) note += (note.empty() ? "" : ", ") + std::to_string(count) + " " + status;
   answer.notes.push_back(note);
-  if (const auto missing = noteOfMissingRules(map, placesAmong(entries))) answer.notes.push_back(*missing);
+  const InventoryParams places = placesAmong(entries);
+  if (const auto missing = noteOfMissingRules(map, places)) answer.notes.push_back(*missing);
+  addNotesOfGone(map, params.with_rows || places.with_rows, answer);
   return answer;
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <set>
 #include <sstream>
 #include <tuple>
 
@@ -104,8 +105,15 @@ InventoryItem rowOf(std::vector<ParkedVehicle> vehicles) {
   return row;
 }
 
-/// The rows that the map's rules derived, and what stands in them.
-std::vector<InventoryItem> parkingRows(const mapping::MapReader& map) {
+struct ParkingRows {
+  std::vector<InventoryItem> standing;
+  std::size_t left_out = 0;  ///< rows of which too few vehicles are left
+};
+
+/// The rows that the map's rules derived, and what stands in them. A row that lost vehicles is one as long as it would
+/// be made of the others.
+ParkingRows parkingRows(const mapping::MapReader& map) {
+  constexpr std::size_t kFewest = 3;  // as the shipped rule asks for
   std::map<std::string, const rules::SemanticObject*> object_named;
   const std::vector<bool> is_gone = goneAmong(map);
   for (std::size_t i = 0; i < is_gone.size(); ++i)
@@ -117,14 +125,24 @@ std::vector<InventoryItem> parkingRows(const mapping::MapReader& map) {
                                 "ORDER BY ?row ?vehicle")
           .table;
   std::map<std::string, std::vector<ParkedVehicle>> rows;
+  std::set<std::string> lost_some;
   for (std::size_t i = 0; i < members.row_count; ++i) {
     const auto known = object_named.find(members.at(i, 1)->text);
-    if (known == object_named.end()) continue;
+    std::vector<ParkedVehicle>& row = rows[members.at(i, 0)->text];
+    if (known == object_named.end()) {
+      lost_some.insert(members.at(i, 0)->text);
+      continue;
+    }
     const auto box = mapping::geometryOf(map.scene().cluxels, mapping::cluxelsOf(*known->second)).box;
-    rows[members.at(i, 0)->text].push_back({box.center.head<2>(), box.yaw_rad, box.size.x(), box.size.y()});
+    row.push_back({box.center.head<2>(), box.yaw_rad, box.size.x(), box.size.y()});
   }
-  std::vector<InventoryItem> found;
-  for (auto& [iri, vehicles] : rows) found.push_back(rowOf(std::move(vehicles)));
+  ParkingRows found;
+  for (auto& [iri, vehicles] : rows) {
+    if (lost_some.contains(iri) && vehicles.size() < kFewest)
+      ++found.left_out;
+    else
+      found.standing.push_back(rowOf(std::move(vehicles)));
+  }
   return found;
 }
 
@@ -189,6 +207,10 @@ InventoryItem measuredItem(const mapping::MapReader& map, const rules::SemanticO
   return item;
 }
 
+std::size_t brokenParkingRows(const mapping::MapReader& map) {
+  return parkingRows(map).left_out;
+}
+
 std::vector<InventoryItem> inventoryOf(const mapping::MapReader& map, const InventoryParams& params,
                                        const std::vector<Street>& streets) {
   const rdf::OntologyView ontology = ontologyViewOf(map.quads());
@@ -204,7 +226,7 @@ std::vector<InventoryItem> inventoryOf(const mapping::MapReader& map, const Inve
   }
   std::stable_sort(items.begin(), items.end(), [](const auto& a, const auto& b) { return a.kind < b.kind; });
   std::vector<InventoryItem> derived;
-  if (params.with_rows) derived = parkingRows(map);
+  if (params.with_rows) derived = parkingRows(map).standing;
   if (params.with_sidewalks) {
     const std::vector<InventoryItem> sidewalks = sidewalksOf(map);
     derived.insert(derived.end(), sidewalks.begin(), sidewalks.end());

@@ -48,6 +48,8 @@ InventoryParams inventoryOfKinds(const rdf::OntologyView& ontology, const std::v
 
 /// One object, without its street.
 InventoryItem measuredItem(const mapping::MapReader& map, const rules::SemanticObject& object);
+/// How many parking rows inventoryOf() leaves out, because too few of their vehicles are left.
+std::size_t brokenParkingRows(const mapping::MapReader& map);
 /// Without objects that later scans show to be gone. Objects first, by class and IRI, then rows and sidewalks by place.
 /// Throws Error (NotFound) for an unknown class.
 std::vector<InventoryItem> inventoryOf(const mapping::MapReader& map, const InventoryParams& params,
