@@ -20,6 +20,8 @@ using namespace sparql;
 using namespace rules;
 namespace {
 
+namespace fs = std::filesystem;
+
 const std::string kPrefixes = "PREFIX clx: <https://w3id.org/cluxel/ontology#> PREFIX ex: <https://example.org/> ";
 const std::string kState = kPrefixes + "INSERT DATA { ex:oak a clx:Tree }";
 const std::string kTakeBack =

@@ -9,6 +9,7 @@
 #include "cluxel/error.hpp"
 #include "mapping/change/map_change.hpp"
 #include "mapping/change/map_merge.hpp"
+#include "mapping/change/named_clouds.hpp"
 #include "mapping/map_reader.hpp"
 #include "rdf/file/map_check.hpp"
 #include "scan/poses/pose_files.hpp"
@@ -41,7 +42,8 @@ ExitCode retract(const ChangeOptions& options, Session& session) {
   mapping::requireChangeable(options.map, options.change);
   mapping::ChangeParams params = options.change;
   params.threads = session.threadCount();
-  const auto clouds = mapping::cloudsNamed(options.map, options.clouds, mapping::IncludeRetracted::Yes);
+  const auto clouds =
+      mapping::cloudsNamed(options.map, options.clouds, session.console, mapping::IncludeRetracted::Yes);
   printChange(options.map, retractScans(options.map, clouds, params, session.console), params, session);
   return ExitCode::Done;
 }

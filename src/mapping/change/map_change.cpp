@@ -26,18 +26,6 @@ void requireOnce(const std::vector<scan::ScanId>& scans) {
     if (!seen.insert(id).second) throw Error(ErrorKind::InvalidArgument, "cloud " + id.hex() + " is named twice");
 }
 
-bool isNamed(const scan::ScanId& id, const fs::path& source, const std::string& name) {
-  constexpr std::size_t kMinDigits = 4;
-  std::string digits = name;
-  if (const std::size_t slash = name.rfind('/'); slash != std::string::npos && name.find("cloud/") != std::string::npos)
-    digits = name.substr(slash + 1);
-  if (digits.size() >= kMinDigits && id.hex().starts_with(digits)) return true;
-  if (source == name || source.filename() == name || source.stem() == name)
-    return true;  // "0001" may be meant as a file
-  std::error_code ignored;
-  return name.find('/') != std::string::npos && fs::equivalent(source, name, ignored);
-}
-
 }  // namespace
 
 void requireFrame(const MapInputs& map, const scan::ScanSet& scans) {
@@ -275,39 +263,6 @@ ChangeReport moveScans(const fs::path& file, const std::vector<ScanPose>& poses,
 ChangeReport applyInputs(const fs::path& file, const std::function<MapInputs(MapInputs)>& change,
                          const ChangeParams& params, ProgressSink& sink) {
   return compacted(appliedTo(file, change, params, sink), file, params, sink);
-}
-
-std::vector<scan::ScanId> cloudsNamed(const fs::path& file, std::span<const std::string> names,
-                                      IncludeRetracted include) {
-  const auto environment = rdf::Environment::open(file, rdf::OpenMode::ReadOnly);
-  const rdf::ReadTransaction transaction = environment->read();
-  const std::vector<Cloud> clouds = storedClouds(transaction);
-  std::optional<std::vector<RetractedScan>> former;
-  std::vector<scan::ScanId> ids;
-  for (const std::string& name : names) {
-    std::vector<scan::ScanId> fitting;
-    for (const Cloud& cloud : clouds)
-      if (isNamed(cloud.id, cloud.source, name)) fitting.push_back(cloud.id);
-    if (fitting.size() > 1)
-      throw Error(ErrorKind::InvalidArgument, file.string() + ": '" + name + "' names " +
-                                                  std::to_string(fitting.size()) + " clouds; name each by its id");
-    if (fitting.empty() && include == IncludeRetracted::Yes) {
-      if (!former) former = retractedScans(transaction);
-      for (const RetractedScan& scan : *former)  // nothing is to be done for any of them
-        if (std::any_of(scan.sources.begin(), scan.sources.end(),
-                        [&](const std::string& source) { return isNamed(scan.id, source, name); }))
-          fitting.push_back(scan.id);
-    }
-    if (fitting.empty())
-      throw Error(ErrorKind::NotFound,
-                  file.string() + ": has no cloud '" + name + "'" +
-                      (name.find('/') != std::string::npos
-                           ? "; give the path as it was given when the scan was added, or another path of the same file"
-                           : ""),
-                  Remedy::ListClouds);
-    ids.insert(ids.end(), fitting.begin(), fitting.end());
-  }
-  return ids;
 }
 
 }  // namespace cluxel::mapping

@@ -66,13 +66,4 @@ ChangeReport moveScans(const std::filesystem::path& file, const std::vector<Scan
 ChangeReport applyInputs(const std::filesystem::path& file, const std::function<MapInputs(MapInputs)>& change,
                          const ChangeParams& params, ProgressSink& sink);
 
-/// Whether a name may mean a retracted scan when it fits no scan of the map.
-enum class IncludeRetracted : std::uint8_t { No, Yes };
-
-/// The clouds that people name by file name ("scan7.pcd"), source path, or at least four leading digits of the id.
-/// Throws Error (NotFound, InvalidArgument) for a name that fits none, or several that are there. A name may fit
-/// several retracted ones, which are all returned.
-std::vector<scan::ScanId> cloudsNamed(const std::filesystem::path& file, std::span<const std::string> names,
-                                      IncludeRetracted include = IncludeRetracted::No);
-
 }  // namespace cluxel::mapping
