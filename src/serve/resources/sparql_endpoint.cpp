@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/ascii.hpp"
+#include "cluxel/error.hpp"
 #include "mapping/change/map_update.hpp"
 #include "serve/http/media_types.hpp"
 #include "serve/http/refusal.hpp"
@@ -93,6 +94,10 @@ HttpResponse runUpdate(ServedMap& map, const Operation& operation, const Request
   options.query.default_graphs = valuesOf(operation.parameters, "using-graph-uri");
   options.query.named_graphs = valuesOf(operation.parameters, "using-named-graph-uri");
   if (!options.query.default_graphs.empty() || !options.query.named_graphs.empty()) refuseUsing(*operation.update);
+  options.load = [](const std::string& iri) -> std::vector<Quad> {
+    throw Error(ErrorKind::InvalidArgument,
+                "LOAD <" + iri + "> is refused: a service reads no file for a request; send the quads by INSERT DATA");
+  };
   map.release();
   ProgressSink silence;
   const sparql::UpdateReport report = mapping::updateMap(map.file(), *operation.update, options, silence);

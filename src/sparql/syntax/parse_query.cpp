@@ -16,7 +16,7 @@ ast::Query SparqlParser::query() {
   else if (take(Keyword::Ask))
     askQuery(query);
   else if (is(Keyword::Insert) || is(Keyword::Delete) || is(Keyword::Load) || is(Keyword::Clear) || is(Keyword::Drop))
-    fail(here(), "this is an update, not a query", "give it to the update command");
+    fail(here(), "this is an update, not a query", "run it as an update");
   else
     unexpected("SELECT, CONSTRUCT, DESCRIBE or ASK",
                {Keyword::Select, Keyword::Construct, Keyword::Describe, Keyword::Ask, Keyword::Prefix, Keyword::Base});

@@ -51,7 +51,7 @@ ast::UpdateOperation SparqlParser::updateOperation() {
   else if (take(Keyword::Copy))
     operation.value = transfer(ast::Transfer::Kind::Copy);
   else if (is(Keyword::Select) || is(Keyword::Construct) || is(Keyword::Describe) || is(Keyword::Ask))
-    fail(here(), "this is a query, not an update", "give it to the query command");
+    fail(here(), "this is a query, not an update", "run it as a query");
   else
     unexpected("an update: INSERT, DELETE, WITH, LOAD, CLEAR, CREATE, DROP, COPY, MOVE or ADD",
                {Keyword::Insert, Keyword::Delete, Keyword::With, Keyword::Load, Keyword::Clear, Keyword::Create,
