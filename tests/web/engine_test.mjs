@@ -85,6 +85,17 @@ test('FROM and FROM NAMED choose the graphs as in cluxel query', async () => {
   assert.deepEqual([asked.form, asked.value], ['truth', false]);
 });
 
+test('times are told as the map writes them, so that a copied one is found', async () => {
+  const texts = ['SELECT ?cloud ?time { ?cloud a clx:Cloud ; <http://www.w3.org/ns/sosa/resultTime> ?time } ORDER BY ?cloud',
+                 'SELECT (MAX(?time) AS ?last) { ?cloud <http://www.w3.org/ns/sosa/resultTime> ?time }'];
+  for (const text of texts.map((one) => PREFIXES + one)) assert.deepEqual(await pageCounts(text), countsOf(text), text);
+  const time = (await pageCounts(PREFIXES + texts[1]))[0][0];
+  const copied = `${PREFIXES} SELECT (COUNT(*) AS ?n) { ?cloud a clx:Cloud ; <http://www.w3.org/ns/sosa/resultTime>
+    "${time}"^^<http://www.w3.org/2001/XMLSchema#dateTime> }`;
+  assert.deepEqual(countsOf(copied), [['1']]);
+  assert.deepEqual(await pageCounts(copied), [['1']]);
+});
+
 test('a CONSTRUCT or DESCRIBE that finds nothing is an empty graph', async () => {
   for (const text of ['CONSTRUCT { ?o a clx:Nope } WHERE { ?o a clx:Nope }', 'DESCRIBE <http://nope/>', 'CONSTRUCT FROM g:none WHERE { ?s ?p ?o }']) {
     const answer = await pageAnswer(PREFIXES + text);

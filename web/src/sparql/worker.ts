@@ -4,6 +4,7 @@
 import init, { Store } from 'oxigraph/web.js';
 import type { Answer, Ask, FromWorker, Load, RdfTerm, ToWorker } from './answers';
 import { namesDataset } from './dataset';
+import { timesIn } from './lexical_times';
 import { nquadsOf } from './packed_quads';
 
 interface EngineTerm {
@@ -14,8 +15,9 @@ interface EngineTerm {
 }
 
 /** The map, and a store without quads, which tells the form of a query at once. */
-interface Stores { map: Store; blank: Store }
+interface Stores { map: Store; blank: Store; times: Map<string, string> }
 
+const DATE_TIME = 'http://www.w3.org/2001/XMLSchema#dateTime';
 const UNKNOWN_FUNCTION = /^The custom function <(.*)> is not supported$/;
 
 let stores: Stores | undefined;
@@ -27,15 +29,16 @@ async function load(message: Load): Promise<void> {
   const map = new Store();
   for (const piece of nquadsOf(message.terms, new Uint8Array(message.quads)))
     map.load(piece, { format: 'application/n-quads', no_transaction: true, lenient: true });
-  stores = { map, blank: new Store() };
+  stores = { map, blank: new Store(), times: timesIn(message.terms) };
   scope.postMessage({ kind: 'loaded', quads: map.size, milliseconds: performance.now() - start });
 }
 
-function termOf(term: EngineTerm | undefined): RdfTerm | null {
+function termOf(term: EngineTerm | undefined, times: Map<string, string>): RdfTerm | null {
   if (!term) return null;
   if (term.termType === 'NamedNode') return { kind: 'iri', value: term.value };
   if (term.termType === 'BlankNode') return { kind: 'blank', value: term.value };
-  return { kind: 'literal', value: term.value, datatype: term.datatype?.value, language: term.language || undefined };
+  const value = (term.datatype?.value === DATE_TIME && times.get(term.value)) || term.value;
+  return { kind: 'literal', value, datatype: term.datatype?.value, language: term.language || undefined };
 }
 
 /** The variables of a SELECT in their order: the engine's solutions leave out unbound ones. */
@@ -65,7 +68,7 @@ function isReadable(blank: Store, text: string): boolean {
   }
 }
 
-function answerOf({ map, blank }: Stores, text: string): Answer {
+function answerOf({ map, blank, times }: Stores, text: string): Answer {
   const start = performance.now();
   const isUnion = !namesDataset(text, (changed) => isReadable(blank, changed));
   const result = map.query(text, { use_default_graph_as_union: isUnion }) as unknown;
@@ -74,11 +77,11 @@ function answerOf({ map, blank }: Stores, text: string): Answer {
   if (typeof result === 'boolean') return timed({ form: 'truth', value: result } as Answer);
   if (makesGraph(blank, text)) {
     const quads = result as { subject: EngineTerm; predicate: EngineTerm; object: EngineTerm }[];
-    const triples = quads.map((quad) => [quad.subject, quad.predicate, quad.object].map((term) => termOf(term)!));
+    const triples = quads.map((quad) => [quad.subject, quad.predicate, quad.object].map((term) => termOf(term, times)!));
     return timed({ form: 'graph', triples } as Answer);
   }
   const solutions = result as Map<string, EngineTerm>[], variables = variablesOf(blank, text);
-  const rows = solutions.map((solution) => variables.map((name) => termOf(solution.get(name))));
+  const rows = solutions.map((solution) => variables.map((name) => termOf(solution.get(name), times)));
   return timed({ form: 'rows', variables, rows } as Answer);
 }
 
