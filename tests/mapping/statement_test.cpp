@@ -17,6 +17,7 @@
 #include "mapping/change/statement_change.hpp"
 #include "mapping/facts/object_geometry.hpp"
 #include "mapping/small_campus.hpp"
+#include "mapping/statements/statement_facts.hpp"
 #include "rdf/map_iris.hpp"
 
 namespace cluxel::mapping {
@@ -179,8 +180,11 @@ TEST_F(Statements, LieDormantWhileTheirScansAreAwayAndWakeUp) {
   EXPECT_EQ(stated.effect, "applied");
   const std::string before = canonicalText(map());
   const ScanId scan = stated.statement.points.begin()->first;
-  retractScans(map(), {scan}, {}, silence());
+  const ChangeReport report = retractScans(map(), {scan}, {.max_window_share = 0}, silence());
   EXPECT_EQ(only(map()).effect, "dormant");
+  for (const auto& outcomes : {report.statements, toldOutcomes(MapReader(map()).quads())})
+    EXPECT_EQ(summaryOf(outcomes),
+              "operator statements: 0 applied, 1 dormant until the scans that they are about are in the map again");
   const auto number = static_cast<std::size_t>(std::find(ids.begin(), ids.end(), scan) - ids.begin());
   extendMap(map(), posed({{number, 0}}), {}, silence());
   EXPECT_EQ(only(map()).effect, "applied");

@@ -76,6 +76,9 @@ class Application {
     for (std::size_t i = 0; i < statements.size(); ++i) takeIgnored(i);
     for (std::uint32_t i = 0; i < objects_.size(); ++i) finish(i);
     for (std::size_t i = 0; i < statements.size(); ++i) nameObject(i);
+    for (StatementOutcome& outcome : result_.outcomes)
+      outcome.lacks_scans = outcome.effect == StatementEffect::Dormant &&
+                            lacksScans(outcome.statement, [&](const auto& scan) { return isThere(scan); });
     std::sort(result_.objects.begin(), result_.objects.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
     return std::move(result_);
   }
@@ -85,6 +88,10 @@ class Application {
     std::uint32_t object = kNoObject;
     std::size_t points = 0;
   };
+
+  bool isThere(const scan::ScanId& scan) const {
+    return std::any_of(clouds_.begin(), clouds_.end(), [&](const Cloud& cloud) { return cloud.id == scan; });
+  }
 
   static bool isOfClass(const Statement& statement) {
     return statement.kind == StatementKind::Is || statement.kind == StatementKind::IsNot ||
@@ -244,14 +251,17 @@ AppliedStatements applyStatements(const std::vector<Statement>& statements, std:
 std::string summaryOf(const std::vector<StatementOutcome>& outcomes) {
   if (outcomes.empty()) return {};
   std::array<std::size_t, 3> counts{};
-  std::size_t against = 0;
+  std::size_t against = 0, without_scans = 0;
   for (const StatementOutcome& outcome : outcomes) {
     ++counts[static_cast<std::size_t>(outcome.effect)];
     against += outcome.contradicts ? 1 : 0;
+    without_scans += outcome.lacks_scans ? 1 : 0;
   }
   std::string text = "operator statements: " + std::to_string(counts[0]) + " applied";
-  if (counts[1] > 0)
-    text += ", " + std::to_string(counts[1]) +
+  if (without_scans > 0)
+    text += ", " + std::to_string(without_scans) + " dormant until the scans that they are about are in the map again";
+  if (const std::size_t others = counts[1] - without_scans; others > 0)
+    text += ", " + std::to_string(others) +
             " dormant (their points belong to no object or to the ground, or their class is none of objects)";
   if (counts[2] > 0) text += ", " + std::to_string(counts[2]) + " overruled by others about the same object";
   if (against > 0) text += "; " + std::to_string(against) + " against what the rules decide";

@@ -19,7 +19,7 @@ inline constexpr std::string_view kOperatorRule = "operator";
 
 enum class StatementEffect : std::uint8_t {
   Applied,    ///< the map says what is stated
-  Dormant,    ///< no object, or a class-wide one, owns the anchored points; or the class is none of objects
+  Dormant,    ///< no object, or a class-wide one, owns the anchored points, if they are there; or the class is none
   Overruled,  ///< another statement about the same object comes first
 };
 std::string_view nameOf(StatementEffect effect);
@@ -30,6 +30,7 @@ struct StatementOutcome {
   std::optional<ContentHash> object;  ///< the object it applies to, by its name in the map; none when that is gone
   std::string rules_class;            ///< the class that the rules gave to the object
   bool contradicts = false;           ///< the rules decided otherwise
+  bool lacks_scans = false;           ///< dormant because the map has none of the scans that it is anchored to
 };
 
 /// An object that the rules made and a statement changed.

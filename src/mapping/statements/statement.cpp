@@ -165,6 +165,12 @@ ContentHash Statement::id() const {
   return hasher.finish();
 }
 
+bool lacksScans(const Statement& statement, const std::function<bool(const scan::ScanId&)>& has) {
+  if (statement.kind == StatementKind::IgnoreRegion) return !has(statement.region.scan);
+  return !statement.points.empty() && std::none_of(statement.points.begin(), statement.points.end(),
+                                                   [&](const auto& of_scan) { return has(of_scan.first); });
+}
+
 std::string textOf(const Statement& statement) {
   const auto shortened = [](const std::string& iri) {
     if (iri.starts_with(rdf::vocabulary::kClx)) return "clx:" + iri.substr(rdf::vocabulary::kClx.size());

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -43,6 +44,9 @@ struct Statement {
   /// Hash of all that is stated.
   ContentHash id() const;
 };
+
+/// Whether it is anchored to scans, of which `has` knows none.
+bool lacksScans(const Statement& statement, const std::function<bool(const scan::ScanId&)>& has);
 
 /// "is clx:StreetSign", "ignore region", "rdfs:label \"north gate\"".
 std::string textOf(const Statement& statement);

@@ -37,6 +37,18 @@ void addStatementFacts(const std::vector<StatementOutcome>& outcomes, FactSink& 
   }
 }
 
+namespace {
+
+/// Whether a scan is in the map: of one that left, only the history tells.
+bool isObserved(const rdf::QuadReader& quads, const scan::ScanId& scan) {
+  const auto cloud = quads.idOf(Term::iri(rdf::iriOfCloud(scan)));
+  const auto graph = quads.idOf(Term::iri(rdf::vocabulary::kGraphObserved));
+  rdf::QuadIds quad;
+  return cloud && graph && quads.scan({.s = *cloud, .p = {}, .o = {}, .g = *graph}).next(quad);
+}
+
+}  // namespace
+
 std::vector<StatementOutcome> toldOutcomes(const rdf::QuadReader& quads) {
   std::vector<StatementOutcome> outcomes;
   for (const Statement& statement : storedStatements(quads)) {
@@ -56,6 +68,8 @@ std::vector<StatementOutcome> toldOutcomes(const rdf::QuadReader& quads) {
     if (const auto object = value("appliesTo")) outcome.object = hashIn(*object, "object");
     outcome.rules_class = value("rulesSay").value_or("");
     outcome.contradicts = value("contradictsRules") == "true";
+    outcome.lacks_scans = outcome.effect == StatementEffect::Dormant &&
+                          lacksScans(statement, [&](const scan::ScanId& scan) { return isObserved(quads, scan); });
     outcomes.push_back(std::move(outcome));
   }
   return outcomes;
