@@ -164,5 +164,21 @@ TEST(ChangedCluxels, FewRaysOfSeveralScansShowThatAllIsGoneAboveWhatStays) {
   EXPECT_EQ(vanishedIn(all), 0) << "what stays lies above";
 }
 
+/// Several rays of five later scans passed each cluxel; at `aside` cluxels none of them would have ended at the thing.
+ChangedCluxels passedAside(std::size_t aside) {
+  ChangedCluxels all = thereBefore();
+  for (std::size_t i = 0; i < all.after.size(); ++i) {
+    all.after[i] = {.seen_through = bits(3), .passed = bits(5)};
+    all.after[i].aside = all.after[i].seen_through.size() + all.after[i].passed.size() - (i < aside ? 0 : 1);
+  }
+  return all;
+}
+
+TEST(ChangedCluxels, RaysBesideAThingDoNotShowThatItIsGone) {
+  EXPECT_EQ(vanishedIn(passedAside(30)), 0);
+  EXPECT_EQ(vanishedIn(passedAside(23)), 0);
+  EXPECT_EQ(vanishedIn(passedAside(22)), 1);
+}
+
 }  // namespace
 }  // namespace cluxel::tasks

@@ -47,6 +47,7 @@ Field fieldOf(const Change& change) {
     const Eigen::Vector3d center = corner + Eigen::Vector3d::Constant(kStep_m / 2);
     field.all.cluxels.name.push_back({perception::tileOf(center), i});
     field.all.cluxels.center.push_back(center), field.all.cluxels.low_corner.push_back(corner);
+    field.all.places.push_back({center, {}, {}});
     field.all.cluxels.extent.push_back(Eigen::Vector3f::Constant(static_cast<float>(kStep_m)));
     for (std::uint32_t other = 0; other < places.size(); ++other)
       if (other != i && std::abs(places[other].x - x) <= 1 && std::abs(places[other].y - y) <= 1)
@@ -83,7 +84,7 @@ KeptCluxels keptOf(const Field& field, int tiles_of_region, const AfterEach& aft
     region.scene.cluxels = field.all.cluxels;
     region.number = field.all.number, region.object = field.all.object;
     for (const auto& name : field.all.cluxels.name) region.is_own.push_back(region.tiles.contains(name.tile));
-    kept.add(region, {field.all.is_told, field.all.changes, field.gone}, unread);
+    kept.add(region, {field.all.is_told, field.all.changes, field.gone, field.all.places}, unread);
     after_each(region, unread, kept);
   }
   return kept;

@@ -34,21 +34,34 @@ bool mayPass(const Cloud& cloud, std::span<const Eigen::Vector3d> places, const 
   return reachedBy(cloud).intersects(box) && mayPass(cloud, places);
 }
 
+bool mayPass(const Cloud& cloud, std::span<const perception::Place> places, const Eigen::AlignedBox3d& box) {
+  const Eigen::AlignedBox3d reached = reachedBy(cloud);
+  return reached.intersects(box) && std::any_of(places.begin(), places.end(), [&](const perception::Place& place) {
+           return reached.contains(place.at);
+         });
+}
+
+Eigen::AlignedBox3d boxAround(std::span<const perception::Place> places) {
+  Eigen::AlignedBox3d box;
+  for (const perception::Place& place : places) box.extend(place.at);
+  return box;
+}
+
 Eigen::AlignedBox3d boxAround(std::span<const Eigen::Vector3d> places) {
   Eigen::AlignedBox3d box;
   for (const Eigen::Vector3d& place : places) box.extend(place);
   return box;
 }
 
-PresenceVoting::Sphere PresenceVoting::sphereAround(std::span<const Eigen::Vector3d> places) {
+PresenceVoting::Sphere PresenceVoting::sphereAround(std::span<const perception::Place> places) {
   Sphere sphere;
-  for (const Eigen::Vector3d& place : places) sphere.centre += place / static_cast<double>(places.size());
-  for (const Eigen::Vector3d& place : places)
-    sphere.radius_m = std::max(sphere.radius_m, (place - sphere.centre).norm());
+  for (const perception::Place& place : places) sphere.centre += place.at / static_cast<double>(places.size());
+  for (const perception::Place& place : places)
+    sphere.radius_m = std::max(sphere.radius_m, (place.at - sphere.centre).norm());
   return sphere;
 }
 
-PresenceVoting::PresenceVoting(std::vector<std::span<const Eigen::Vector3d>> places, const std::vector<Cloud>& clouds,
+PresenceVoting::PresenceVoting(std::vector<std::span<const perception::Place>> places, const std::vector<Cloud>& clouds,
                                unsigned threads)
     : RayObserver(threads),
       is_told_(timedClouds(clouds).size() >= 2),
@@ -72,13 +85,13 @@ class PresenceVoting::View : public ScanView {
   void look(const perception::ScanRays& rays, unsigned threads) override {
     constexpr perception::RayParams kParams;
     parallelFor(passed_.size(), threads, [&](std::size_t i) {
-      const std::span<const Eigen::Vector3d> places = voting_.places_[passed_[i]];
+      const std::span<const perception::Place> places = voting_.places_[passed_[i]];
       const Sphere& sphere = voting_.spheres_[passed_[i]];
       if (!rays.mayConcern(sphere.centre, sphere.radius_m, kParams)) return;
       for (std::size_t place = 0; place < places.size(); ++place) {
-        const RayVerdict verdict = rays.verdictAt(places[place], kParams).verdict;
-        if (verdict == RayVerdict::Hit) votes_[i].hits.set(place);
-        if (verdict == RayVerdict::SeenThrough) votes_[i].seen_through.set(place);
+        const perception::PlaceVerdict found = rays.verdictAt(places[place], kParams);
+        if (found.verdict == RayVerdict::Hit) votes_[i].hits.set(place);
+        if (found.verdict == RayVerdict::SeenThrough && !found.is_aside) votes_[i].seen_through.set(place);
       }
     });
   }

@@ -23,17 +23,32 @@ constexpr std::size_t kMaxInnerPlaces = 512;
 
 }  // namespace
 
+perception::Place placeOf(const perception::SceneCluxels& cluxels, std::uint32_t cluxel,
+                          const std::function<bool(std::uint32_t)>& like) {
+  Eigen::AlignedBox3d box;
+  const auto extend = [&](std::uint32_t c) {
+    box.extend(cluxels.low_corner[c]);
+    box.extend(Eigen::Vector3d(cluxels.low_corner[c] + cluxels.extent[c].cast<double>()));
+  };
+  extend(cluxel);
+  for (const std::uint32_t other : cluxels.neighbours(cluxel))
+    if (like(other)) extend(other);
+  const Eigen::Vector3d& at = cluxels.center[cluxel];
+  return {at, (box.min() - at).cast<float>(), (box.max() - at).cast<float>()};
+}
+
 /// Rays that graze the ground beside a low place end near it: such places are left out where there are others.
-std::vector<Eigen::Vector3d> placesOn(const perception::Scene& scene, const rules::SemanticObject& object) {
+std::vector<perception::Place> placesOn(const perception::Scene& scene, const rules::SemanticObject& object) {
   const perception::SceneCluxels& cluxels = scene.cluxels;
   if (object.class_iri == rdf::vocabulary::clx("Ground")) return {};
-  std::vector<std::uint32_t> members = cluxelsOf(object);
-  std::vector<std::uint32_t> clear = members;
+  const std::vector<std::uint32_t> all = cluxelsOf(object);
+  std::vector<std::uint32_t> members = all, clear = all;
   std::erase_if(clear, [&](std::uint32_t c) { return cluxels.height_above_ground[c] < kClearOfGround_m; });
   if (!clear.empty()) members = std::move(clear);
-  std::vector<Eigen::Vector3d> places;
+  const auto is_member = [&all](std::uint32_t c) { return std::binary_search(all.begin(), all.end(), c); };
+  std::vector<perception::Place> places;
   const std::size_t step = (members.size() + perception::kMaxPlaces - 1) / perception::kMaxPlaces;
-  for (std::size_t i = 0; i < members.size(); i += step) places.push_back(cluxels.center[members[i]]);
+  for (std::size_t i = 0; i < members.size(); i += step) places.push_back(placeOf(cluxels, members[i], is_member));
   return places;
 }
 

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
+#include <functional>
 #include <map>
 #include <set>
 #include <span>
@@ -10,6 +12,7 @@
 
 #include "base/content_hash.hpp"
 #include "perception/segments/scene.hpp"
+#include "perception/visibility/place.hpp"
 #include "rules/language/rule_set.hpp"
 #include "rules/objects/semantic_object.hpp"
 
@@ -17,12 +20,16 @@ namespace cluxel::mapping {
 
 struct RayTarget {
   ContentHash object;
-  std::vector<Eigen::Vector3d> places;        ///< on it: placesOn()
+  std::vector<perception::Place> places;      ///< on it: placesOn()
   std::vector<Eigen::Vector3d> inner_places;  ///< of a barrier: placesWithin(); none of others
 };
 
-/// Up to 256 places on an object [m, map], at least 0.3 m above the ground where it has such; none of ground.
-std::vector<Eigen::Vector3d> placesOn(const perception::Scene& scene, const rules::SemanticObject& object);
+/// The place of a cluxel, with the extent of it and of those that intersect it and are `like` it.
+perception::Place placeOf(const perception::SceneCluxels& cluxels, std::uint32_t cluxel,
+                          const std::function<bool(std::uint32_t)>& like);
+
+/// Up to 256 places on an object, at least 0.3 m above the ground where it has such; none of ground.
+std::vector<perception::Place> placesOn(const perception::Scene& scene, const rules::SemanticObject& object);
 
 /// Up to 512 places inside the outline of an object [m, map]: at least 0.3 m above the ground, and as far below its top
 /// edge there. Rays over the edge are not meant.

@@ -17,7 +17,7 @@ namespace {
 using MaybePresence = std::optional<perception::Presence>;
 
 /// The version of the computation of presence from rays. A new number invalidates every stored presence.
-constexpr std::uint32_t kVersion = 6;
+constexpr std::uint32_t kVersion = 7;
 
 /// A row of the stored table.
 struct Row {
@@ -69,9 +69,9 @@ PresenceUpdate::PresenceUpdate(const rdf::ReadTransaction& transaction, std::spa
   if (!is_told_) return;
   std::vector<ContentHash> cloud_hash;
   for (const Cloud* cloud : timed) cloud_hash.push_back(hashOf(*cloud));
-  std::vector<std::span<const Eigen::Vector3d>> asked;
+  std::vector<std::span<const perception::Place>> asked;
   for (std::size_t i = 0; i < targets.size(); ++i) {
-    const std::span<const Eigen::Vector3d> places = targets[i].places;
+    const std::span<const perception::Place> places = targets[i].places;
     if (places.empty()) continue;  // the ground: it has no row
     const Eigen::AlignedBox3d box = boxAround(places);
     ContentHasher hasher;

@@ -41,6 +41,17 @@ RaysNear RayBundle::raysNear(const Eigen::Vector3d& place_map, const RayParams& 
   return rays;
 }
 
+bool RayBundle::passesWithin(const Place& place, const RayParams& params) const {
+  const Eigen::Vector3d at = place.at - origin_;
+  if (!isWithinReach(at, params)) return false;
+  const Silhouette thing(place, origin_);
+  bool is_met = false;
+  index_.forEachNear(at, params.near_m, [&](const Eigen::Vector3d& end, double range_m, double along_m) {
+    is_met = is_met || (range_m >= along_m + params.behind_m && thing.isMetBy(end));
+  });
+  return is_met;
+}
+
 double RayBundle::returnsMissing(const Eigen::Vector3d& place_map, const RayParams& params) const {
   const Eigen::Vector3d place = place_map - origin_;
   if (place.z() <= 0 || !isWithinReach(place, params)) return 0;  // below the sensor a ray without return was swallowed

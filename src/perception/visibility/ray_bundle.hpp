@@ -11,6 +11,7 @@
 
 #include "perception/visibility/direction_index.hpp"
 #include "perception/visibility/expected_returns.hpp"
+#include "perception/visibility/place.hpp"
 
 namespace cluxel::perception {
 
@@ -51,6 +52,8 @@ class RayBundle {
   double maxRange_m() const { return max_range_m_; }
   /// None when the place is out of reach. Cost: the rays within `near_m` of the direction to the place.
   RaysNear raysNear(const Eigen::Vector3d& place_map, const RayParams& params) const;
+  /// Whether a ray near a place passed it that would have ended at the thing there. Cost: as for raysNear().
+  bool passesWithin(const Place& place, const RayParams& params) const;
   /// How many rays something at a place above the sensor would return (ExpectedReturns) where none ends near it: zero
   /// unless the three nearest rays below it reach as far. Else a missing return tells nothing: the scan may be thinned
   /// or cut off, or a dark thing may stand before the place. Cost: the rays below the place.

@@ -149,4 +149,26 @@ PlaceVerdict ScanRays::verdictAt(const Eigen::Vector3d& place_map, const RayPara
   return {RayVerdict::FewPassed, true, rays, others};
 }
 
+PlaceVerdict ScanRays::verdictAt(const Place& place, const RayParams& params) const {
+  PlaceVerdict found = verdictAt(place.at, params);
+  if (found.verdict != RayVerdict::SeenThrough && found.verdict != RayVerdict::FewPassed) return found;
+  const auto is_met = [&](const RayBundle& bundle) { return bundle.passesWithin(place, params); };
+  const bool is_before_sky =
+      found.verdict == RayVerdict::SeenThrough && found.rays.passed < static_cast<std::uint64_t>(params.min_rays);
+  found.is_aside =
+      std::none_of(bundles_.begin(), bundles_.end(), is_met) && !(is_before_sky && isMissed(place, params));
+  return found;
+}
+
+bool ScanRays::isMissed(const Place& place, const RayParams& params) const {
+  double missing = 0;
+  for (const RayBundle& bundle : bundles_) {
+    const double around = bundle.returnsMissing(place.at, params);
+    if (around == 0) continue;
+    const double share = std::min(Silhouette(place, bundle.origin()).halfWidth_m() / params.near_m, 1.0);
+    missing += around * share * share;
+  }
+  return missing >= params.min_missing;
+}
+
 }  // namespace cluxel::perception

@@ -24,6 +24,9 @@ struct PlaceVerdict {
   bool is_sparse = false;     ///< fewer than RayParams::min_rays came near and were not stopped before
   RayCounts rays{};           ///< near the place
   std::uint64_t stopped = 0;  ///< rays near it that ended before it, or so little behind it that they tell nothing
+  /// Rays passed, but none of them would have ended at the thing (Silhouette): rays far apart pass a thin pole on both
+  /// sides, and many pass close above a roof.
+  bool is_aside = false;
 };
 
 /// The rays of a scan, one bundle for each place of the sensor, in whatever order the points are. Rays that start
@@ -45,8 +48,13 @@ class ScanRays {
   /// A place above the sensor where no ray ends or passes is seen through when something there would return
   /// `min_missing` rays (RayBundle::returnsMissing).
   PlaceVerdict verdictAt(const Eigen::Vector3d& place_map, const RayParams& params) const;
+  /// The same, and whether the rays tell of the thing there. Cost: twice that where rays pass.
+  PlaceVerdict verdictAt(const Place& place, const RayParams& params) const;
 
  private:
+  /// Whether so many returns are missing that rays would have ended at the thing, however thin it is there.
+  bool isMissed(const Place& place, const RayParams& params) const;
+
   std::deque<RayBundle> bundles_;
 };
 

@@ -37,12 +37,18 @@ void inPieces(std::size_t count, unsigned threads, const Work& work) {
               [&](std::size_t piece) { work(piece * kPiece, std::min(count, (piece + 1) * kPiece)); });
 }
 
+/// The place of a cluxel on the thing that it belongs to.
+perception::Place placeIn(const mapping::MapRegion& region, std::uint32_t cluxel) {
+  return mapping::placeOf(region.scene.cluxels, cluxel,
+                          [&](std::uint32_t other) { return region.object[other] == region.object[cluxel]; });
+}
+
 /// What rays must tell before it is known whether a cluxel changed.
 class FirstFindings {
  public:
-  FirstFindings(const perception::SceneCluxels& cluxels, const std::vector<bool>& wanted) : cluxels_(cluxels) {
+  FirstFindings(const mapping::MapRegion& region, const std::vector<bool>& wanted) : places_(wanted.size()) {
     for (std::uint32_t i = 0; i < wanted.size(); ++i)
-      if (wanted[i]) numbers_.push_back(i);
+      if (wanted[i]) numbers_.push_back(i), places_[i] = placeIn(region, i);
     for (auto& of_time : found_) of_time.resize(numbers_.size());
   }
 
@@ -51,24 +57,25 @@ class FirstFindings {
     std::vector<RayFindings>& found = found_[scan.time];
     inPieces(numbers_.size(), threads, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i)
-        if (!found[i].isHit()) found[i].add(rays.verdictAt(cluxels_.center[numbers_[i]], kCluxelRays), scan.number);
+        if (!found[i].isHit()) found[i].add(rays.verdictAt(places_[numbers_[i]], kCluxelRays), scan.number);
     });
   }
 
   RegionFindings take(std::vector<bool> is_told) {
-    RegionFindings all{std::move(is_told), std::vector(cluxels_.size(), CluxelChange::Undecided), {}};
-    all.gone.resize(cluxels_.size());
+    RegionFindings all{std::move(is_told), std::vector(places_.size(), CluxelChange::Undecided), {}, {}};
+    all.gone.resize(places_.size());
     for (std::size_t i = 0; i < numbers_.size(); ++i) {
       const std::uint32_t cluxel = numbers_[i];
       all.changes[cluxel] = changeOf(found_[kBefore][i], found_[kAfter][i]);
       all.gone[cluxel] = found_[all.changes[cluxel] == CluxelChange::Vanished ? kAfter : kBefore][i];
     }
     found_ = {};
+    all.places = std::move(places_);
     return all;
   }
 
  private:
-  const perception::SceneCluxels& cluxels_;
+  std::vector<perception::Place> places_;  ///< by cluxel; of those that are wanted
   std::vector<std::uint32_t> numbers_;
   std::array<std::vector<RayFindings>, 2> found_;
 };
@@ -117,8 +124,8 @@ class Survey {
       wanted[i] = may_change[i] && region.is_own[i];
     }
     PointCells cells = cellsIn(region, may_change);
-    FirstFindings findings(cluxels, wanted);
-    std::vector<std::vector<Eigen::Vector3d>> places;
+    FirstFindings findings(region, wanted);
+    std::vector<std::vector<perception::Place>> places;
     for (const rules::SemanticObject& object : region.objects)
       places.push_back(mapping::placesOn(region.scene, object));
     mapping::PresenceVoting voting({places.begin(), places.end()}, clouds_, threads_);
@@ -174,7 +181,7 @@ class Survey {
     kept_cluxels_.add(region, found, unread_);
   }
 
-  void addStates(const mapping::MapRegion& region, const std::vector<std::vector<Eigen::Vector3d>>& places,
+  void addStates(const mapping::MapRegion& region, const std::vector<std::vector<perception::Place>>& places,
                  const std::vector<mapping::ObjectVotes>& votes) {
     for (std::size_t i = 0; i < region.objects.size(); ++i) {
       if (places[i].empty()) continue;
@@ -216,7 +223,7 @@ class Survey {
     const perception::ScanRays rays(map_.scanOf(scan.cloud.id));
     inPieces(found.size(), threads_, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i)
-        if (all.is_told[i]) found[i].add(rays.verdictAt(all.cluxels.center[i], kCluxelRays), scan.number);
+        if (all.is_told[i]) found[i].add(rays.verdictAt(all.places[i], kCluxelRays), scan.number);
     });
     inPieces(parts.size(), threads_, [&](std::size_t begin, std::size_t end) {
       lookAtCells(rays, scan.number, &PointCell::own, std::span(parts).subspan(begin, end - begin));

@@ -48,6 +48,7 @@ class Clustering {
   static constexpr double kWhole = 0.9, kMinShare = 0.75, kMinShareOfMany = 0.5, kThin_m = 0.3;
   static constexpr std::size_t kMinTop = 8, kLarge = 12;
   static constexpr double kMostSparseHits = 0.95;
+  static constexpr double kMostAside = 0.75;  ///< share of cluxels that rays pass only aside of the thing
   static constexpr double kDense = 0.6;  ///< share of scans with few rays that hit a thing through which few rays pass
   static constexpr perception::PresenceParams kPresence{};
 
@@ -129,10 +130,20 @@ class Clustering {
     return stopped > kMostStopped * passing;
   }
 
+  /// Whether hardly any ray that passes would have ended at the thing: rays pass close above a roof that the sensor
+  /// sees edge-on, whether it is there or not.
+  bool isPassedAside(const ChangeGroup& cluster) const {
+    const auto aside = std::count_if(cluster.begin(), cluster.end(), [this](std::uint32_t cluxel) {
+      const RayFindings& gone = *findingsAt(cluxel, false);
+      return gone.seen_through.size() + gone.passed.size() <= gone.aside;
+    });
+    return static_cast<double>(aside) > kMostAside * static_cast<double>(cluster.size());
+  }
+
   bool isSure(const ChangeGroup& cluster) const {
     const ChangeGroup around = groups_.withNear(cluster);
     const ScanNumbers without = scansWithoutIt(cluster, around);
-    return !isAtEdge(cluster) && !isPermeable(cluster, around, without) &&
+    return !isAtEdge(cluster) && !isPassedAside(cluster) && !isPermeable(cluster, around, without) &&
            isShown(cluster, around, sparseHits(cluster, around, without));
   }
 
@@ -188,7 +199,7 @@ void RayFindings::add(const perception::PlaceVerdict& found, std::uint32_t scan)
   if (found.verdict == RayVerdict::SeenThrough) seen_through.insert(scan);
   if (found.verdict == RayVerdict::FewPassed) passed.insert(scan);
   if (found.verdict == RayVerdict::SeenThrough || found.verdict == RayVerdict::FewPassed)
-    passing_rays += found.rays.passed, stopped_rays += found.stopped;
+    passing_rays += found.rays.passed, stopped_rays += found.stopped, aside += found.is_aside ? 1 : 0;
 }
 
 CluxelChange changeOf(const RayFindings& before, const RayFindings& after) {

@@ -21,6 +21,7 @@ struct RayFindings {
   ScanNumbers sparse_hits{}, passed{};
   /// Rays near the place of the scans that passed it: those that did, and those that were stopped before.
   std::uint64_t passing_rays = 0, stopped_rays = 0;
+  std::size_t aside = 0;  ///< scans that passed it with rays of which none would have ended at the thing
 
   bool isHit() const { return !hits.empty(); }
   /// Rays passed the place, and none ended there.
@@ -41,10 +42,11 @@ CluxelChange changeOf(const RayFindings& before, const RayFindings& after);
 
 /// Cluxels that changed, and all that intersect one of them.
 struct ChangedCluxels {
-  perception::SceneCluxels cluxels;   ///< with the edges of those that changed; no labels, seeds and primitives
-  std::vector<std::uint32_t> number;  ///< of each in the scene of the map, ascending
-  std::vector<std::uint32_t> object;  ///< of each in MapReader::objects(), or kNoObject
-  std::vector<bool> is_told;          ///< rays are compared with it: false for ground
+  perception::SceneCluxels cluxels;       ///< with the edges of those that changed; no labels, seeds and primitives
+  std::vector<std::uint32_t> number;      ///< of each in the scene of the map, ascending
+  std::vector<std::uint32_t> object;      ///< of each in MapReader::objects(), or kNoObject
+  std::vector<bool> is_told;              ///< rays are compared with it: false for ground
+  std::vector<perception::Place> places;  ///< on the thing that it belongs to; of those that rays are compared with
   std::vector<CluxelChange> changes;
   std::vector<RayFindings> before, after;
 };
@@ -69,7 +71,8 @@ inline constexpr double kMostStopped = 0.75;
 ///   decided ones in and around it that lie at the height of its middle or higher, 90 % changed like it. Then all is
 ///   gone from there upwards, as of a hedge that was cut. What scans with poor poses miss is mostly an edge of
 ///   something that stays, and a gap in a crown has leaves beside it.
-/// And of the rays near its cluxels at most three ended before them for each four that passed.
+/// And of the rays near its cluxels at most three ended before them for each four that passed, and at a quarter of its
+/// cluxels or more some ray passed that would have ended at the thing (PlaceVerdict::is_aside).
 std::vector<ChangeGroup> clustersOf(CluxelChange kind, const ChangedCluxels& all);
 /// Those of the possible clusters that clustersOf() keeps. `all` need not hold more than these and what intersects
 /// them.

@@ -48,6 +48,7 @@ void KeptCluxels::add(const mapping::MapRegion& region, const RegionFindings& fo
               found.is_told[i],
               cluxels.center[i],
               cluxels.low_corner[i],
+              found.places[i],
               cluxels.extent[i],
               found.gone[i],
               {},
@@ -80,7 +81,7 @@ ChangedCluxels KeptCluxels::assembled(std::vector<Kept>& kept) {
     all.number.push_back(one.number), all.object.push_back(one.object);
     all.changes.push_back(one.change), all.is_told.push_back(one.is_told);
     all.cluxels.center.push_back(one.center), all.cluxels.low_corner.push_back(one.low_corner);
-    all.cluxels.extent.push_back(one.extent);
+    all.cluxels.extent.push_back(one.extent), all.places.push_back(one.place);
   }
   all.cluxels.edge_offset.push_back(0);
   for (const Kept& one : kept) {

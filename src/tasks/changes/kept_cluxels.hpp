@@ -16,7 +16,8 @@ namespace cluxel::tasks {
 struct RegionFindings {
   std::vector<bool> is_told;  ///< rays are compared with it
   std::vector<CluxelChange> changes;
-  std::vector<RayFindings> gone;  ///< of a changed one: all that the rays of the time without it found
+  std::vector<RayFindings> gone;          ///< of a changed one: all that the rays of the time without it found
+  std::vector<perception::Place> places;  ///< of those in the region's tiles that rays are compared with
 };
 
 /// Collects the possible clusters (possibleClusters) of both kinds with the cluxels that intersect them. A cluster is
@@ -43,6 +44,7 @@ class KeptCluxels {
     CluxelChange change = CluxelChange::Undecided;
     bool is_told = false;
     Eigen::Vector3d center, low_corner;
+    perception::Place place;
     Eigen::Vector3f extent;
     RayFindings gone;
     std::vector<std::uint32_t> neighbours;         ///< numbers in the map's scene; of a changed one
