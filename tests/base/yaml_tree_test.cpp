@@ -104,5 +104,16 @@ TEST(YamlTree, RefusesATextOfMoreThanEightMebibytes) {
   EXPECT_THAT(faultsOf(text), HasSubstr("f.yaml: error: is larger than 8 MiB"));
 }
 
+TEST(YamlTree, RefusesATextThatIsNotUtf8WithItsPlace) {
+  const std::string fault = faultsOf(
+      "a: 1\nb: Stra\xDF"
+      "e\n");
+  EXPECT_THAT(fault, HasSubstr("f.yaml:2:8: error: is not UTF-8"));
+  EXPECT_THAT(fault, HasSubstr("save the file in UTF-8"));
+  EXPECT_EQ(faultsOf("b: Stra\xC3\x9F"
+                     "e\n"),
+            "");
+}
+
 }  // namespace
 }  // namespace cluxel::testing

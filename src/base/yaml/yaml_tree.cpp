@@ -11,6 +11,7 @@
 #include <unordered_set>
 
 #include "base/shown_line.hpp"
+#include "base/utf8.hpp"
 
 namespace cluxel {
 
@@ -147,6 +148,11 @@ std::optional<YamlNode> parseYaml(const std::string& file, std::string_view text
   if (text.size() > kMaxYamlBytes) {
     faults.error({.file = file}, "is larger than 8 MiB, the most that a YAML file may have",
                  "split it, or list folders instead of files and name a poses file instead of single poses");
+    return std::nullopt;
+  }
+  // What a rule file says becomes facts of the map, which only UTF-8 can be.
+  if (const auto offset = firstInvalidUtf8(text)) {
+    faults.error(locate(file, text, *offset), "is not UTF-8", "save the file in UTF-8");
     return std::nullopt;
   }
   TreeBuilder builder(file, faults);

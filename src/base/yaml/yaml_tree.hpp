@@ -35,7 +35,7 @@ std::string_view describeKind(const YamlNode& node);
 
 /// Parses one document; an empty text gives a Null node. Repeated keys, keys that are no scalars, anchors, aliases and
 /// further documents are faults. Absent, with a fault, when the text is not YAML or nested more than 80 levels deep,
-/// or larger than 8 MiB.
+/// larger than 8 MiB, or not UTF-8.
 /// `faults` must know `file`.
 std::optional<YamlNode> parseYaml(const std::string& file, std::string_view text, FaultList& faults);
 
