@@ -136,7 +136,10 @@ MapInputs readMapInputs(const MapInputFiles& files, const DataHome& home) {
 }
 
 MapInputs withNamedFiles(MapInputs inputs, const MapInputFiles& files, const DataHome& home) {
-  if (!files.ontology.empty()) inputs.ontology = readAll(givenOr(files.ontology, "ontology", ".ttl", home));
+  if (!files.ontology.empty()) {
+    inputs.ontology = readAll(givenOr(files.ontology, "ontology", ".ttl", home));
+    checkOntology(ontologySources(inputs.ontology));
+  }
   std::vector<fs::path> rules;
   for (const fs::path& name : files.rules) rules.push_back(home.locateFile("rules", name, ".rules.yaml"));
   if (!rules.empty()) {

@@ -75,7 +75,7 @@ struct MapInputFiles {
   std::filesystem::path model;  ///< a folder or a file; default models/oakland
 };
 
-/// Reads the files through `home`. Throws InputError for a file that is missing.
+/// Reads the files through `home`. Throws InputError for a file that is missing, and for faults of an ontology.
 MapInputs readMapInputs(const MapInputFiles& files, const DataHome& home);
 /// `inputs` with those replaced that `files` names. Rules are read for the ontology of the result.
 MapInputs withNamedFiles(MapInputs inputs, const MapInputFiles& files, const DataHome& home);

@@ -4,6 +4,7 @@
 
 #include "cluxel/error.hpp"
 #include "mapping/asking_rules.hpp"
+#include "mapping/facts/semantic_layer.hpp"
 #include "sparql/query_engine.hpp"
 
 namespace cluxel::mapping {
@@ -68,6 +69,24 @@ TEST(BenchClass, IsUnknownToAMapWithoutItsOntology) {
   inputs.rule_roots = 1;
   EXPECT_THROW(buildMap(scansOf({folder.path() / "park.pcd"}), inputs, folder.path() / "map.clx", {}, silence()),
                InputError);
+}
+
+TEST(BenchClass, IsRefusedForNewRulesWhenNoQuestionWouldFindIt) {
+  MapInputs inputs = shippedInputs();
+  inputs.ontology.push_back({"bench.ttl",
+                             "@prefix clx: <https://w3id.org/cluxel/ontology#> .\n"
+                             "clx:Bench a <http://www.w3.org/2002/07/owl#Class> .\n"});
+  inputs.rules = {{"bench.rules.yaml", kBenchRules}};
+  inputs.rule_roots = 1;
+  try {
+    parseNewInputs(inputs);
+    FAIL() << "the class is not below clx:Object";
+  } catch (const InputError& fault) {
+    const std::string text = format(fault.diagnostics());
+    EXPECT_NE(text.find("bench.rules.yaml:6:"), std::string::npos) << text;
+    EXPECT_NE(text.find("clx:Bench of rule 'bench/by-size' is not below clx:Object"), std::string::npos) << text;
+  }
+  EXPECT_EQ(parseInputs(inputs).rules.rules.size(), 1U) << "a map of an earlier program can have such rules";
 }
 
 }  // namespace

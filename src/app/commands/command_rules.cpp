@@ -72,6 +72,7 @@ std::vector<mapping::NamedText> ontologyFor(const RulesOptions& options, const D
         std::any_of(texts.begin(), texts.end(), [&](const auto& text) { return text.text == more.text; });
     if (!is_known) texts.push_back(std::move(more));
   }
+  checkOntology(mapping::ontologySources(texts));
   return texts;
 }
 
@@ -94,8 +95,9 @@ std::vector<Diagnostic> checkSparqlRule(const fs::path& file, const rdf::Ontolog
 /// thing, and thresholds that noise decides in a map.
 std::vector<Diagnostic> checkTrees(const std::vector<fs::path>& files, const rdf::OntologyView& ontology,
                                    const RulesOptions& options, unsigned threads) {
-  rules::LoadedRules loaded =
-      rules::loadRules(files, rules::catalogueOf(ontology), mapping::withCheckedQueries(ontology));
+  rules::RuleLoadOptions loading = mapping::withCheckedQueries(ontology);
+  loading.requires_objects = true;
+  rules::LoadedRules loaded = rules::loadRules(files, rules::catalogueOf(ontology), loading);
   if (options.pairs && loaded.rules)
     for (Diagnostic& pair : checkRulePairs(*loaded.rules)) loaded.diagnostics.push_back(std::move(pair));
   if (!options.map.empty() && loaded.rules) {

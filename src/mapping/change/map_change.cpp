@@ -213,7 +213,9 @@ ChangeReport appliedTo(const fs::path& file, const std::function<MapInputs(MapIn
   inputs.crs = editor.inputs().inputs.crs;
   if (inputs.hash() == editor.inputs().inputs.hash()) return editor.takeReport();
   if (inputs.sparql_rules != editor.inputs().inputs.sparql_rules) checkNewSparqlRules(inputs.sparql_rules);
-  editor.setInputs(parseInputs(inputs));
+  const MapInputs& before = editor.inputs().inputs;
+  const bool has_new_rules = inputs.rules != before.rules || inputs.ontology != before.ontology;
+  editor.setInputs(has_new_rules ? parseNewInputs(inputs) : parseInputs(inputs));
   rdf::WriteTransaction transaction = editor.begin();
   editor.commit(transaction, "rules apply", {}, {});
   return editor.takeReport();

@@ -40,6 +40,21 @@ std::vector<rules::RuleSource> ruleSources(const std::vector<NamedText>& texts) 
   return sources;
 }
 
+ParsedInputs parsedWith(const MapInputs& inputs, const rules::RuleLoadOptions& options) {
+  ParsedInputs parsed;
+  parsed.inputs = inputs;
+  parsed.model = perception::parseModel(inputs.model.text, inputs.model.name);
+  perception::checkRanges(inputs.params);
+  parsed.rules =
+      loadRuleTexts(ruleSources(inputs.rules), inputs.rule_roots, classCatalogueOf(inputs.ontology), options).require();
+  // The volumes of two cluxels that touch grow towards each other, from seeds that lie in them.
+  constexpr double kInside_m = 0.8;
+  const double edge_m = 2 * parsed.model.perception.clustering.max_reach_m + kInside_m;
+  parsed.rules.contact_m = std::max(parsed.rules.contact_m, edge_m);
+  checkSparqlRules(inputs.sparql_rules);
+  return parsed;
+}
+
 /// Makes the observed graph hold the facts of the scene, of `reasoning`, of statements and of ways. Returns the ways.
 std::vector<ToldWay> writeObserved(SceneFacts& of_scene, const ObservedMap& map,
                                    const std::vector<StatementOutcome>& statements, const WayGraph& ways) {
@@ -96,19 +111,13 @@ void writeObjectsSoFar(rdf::WriteTransaction& transaction, const MapInputs& inpu
 }
 
 ParsedInputs parseInputs(const MapInputs& inputs) {
-  ParsedInputs parsed;
-  parsed.inputs = inputs;
-  parsed.model = perception::parseModel(inputs.model.text, inputs.model.name);
-  perception::checkRanges(inputs.params);
-  parsed.rules = loadRuleTexts(ruleSources(inputs.rules), inputs.rule_roots, classCatalogueOf(inputs.ontology),
-                               withCheckedQueries())
-                     .require();
-  // The volumes of two cluxels that touch grow towards each other, from seeds that lie in them.
-  constexpr double kInside_m = 0.8;
-  const double edge_m = 2 * parsed.model.perception.clustering.max_reach_m + kInside_m;
-  parsed.rules.contact_m = std::max(parsed.rules.contact_m, edge_m);
-  checkSparqlRules(inputs.sparql_rules);
-  return parsed;
+  return parsedWith(inputs, withCheckedQueries());
+}
+
+ParsedInputs parseNewInputs(const MapInputs& inputs) {
+  rules::RuleLoadOptions options = withCheckedQueries();
+  options.requires_objects = true;
+  return parsedWith(inputs, options);
 }
 
 void inferFacts(rdf::WriteTransaction& transaction, const MapInputs& inputs, ProgressSink& sink,

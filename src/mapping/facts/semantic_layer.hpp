@@ -27,6 +27,9 @@ struct ParsedInputs {
 };
 /// Throws InputError with all faults of ontology, rules or model.
 ParsedInputs parseInputs(const MapInputs& inputs);
+/// The same for rules and an ontology that no map has yet: rules of classes that are not below clx:Object are refused.
+/// A map of an earlier program may have such rules, and can still be read and changed.
+ParsedInputs parseNewInputs(const MapInputs& inputs);
 
 /// Replaces graph ontology by the inputs' ontology.
 void writeOntology(rdf::WriteTransaction& transaction, const MapInputs& inputs);

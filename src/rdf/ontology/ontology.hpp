@@ -68,7 +68,13 @@ OntologyView ontologyViewOf(std::span<const RdfSource> sources);
 /// Loads ontologies into the ontology graph, whatever graph the sources name. Throws one InputError with all faults:
 /// syntax, subclass cycles, malformed colours, mobilities and probabilities, places and parts of unknown classes. After
 /// an error the transaction must be dropped. Does not flush.
+/// A map holds the texts of its ontology, so that what an earlier version took is taken here as well.
 void loadOntology(std::span<const RdfSource> sources, QuadWriter& writer);
+
+/// Throws one InputError with all faults for which an ontology is refused when it is read from files: those of
+/// loadOntology(), superclasses that are defined nowhere, unknown properties of the vocabulary, two values where one is
+/// meant, and usual places that lack a distance or a probability or are too probable together.
+void checkOntology(std::span<const RdfSource> sources);
 
 /// The limits of an inference by whoever asked for it; none when it is empty.
 struct InferenceCheck {

@@ -7,6 +7,7 @@
 
 #include "base/file_bytes.hpp"
 #include "base/nearest_name.hpp"
+#include "rdf/vocabulary.hpp"
 #include "rules/language/rule_definitions.hpp"
 #include "rules/language/rule_reading.hpp"
 #include "rules/language/rule_sources.hpp"
@@ -180,6 +181,16 @@ void warnOfUnused(const GatheredRules& gathered, const RuleReading& reading, con
     if (!constant.used) faults.warning(constant.at, "the constant '" + name + "' is not used");
 }
 
+/// Questions find objects by clx:Object: those of a class that does not lead there would be missing in every answer.
+void checkIsObject(const Rule& rule, const RuleSet& rules, FaultList& faults) {
+  if (rule.class_iri.empty() || rules.catalogue.isA(rule.class_iri, rdf::vocabulary::clx("Object"))) return;
+  const std::string name = rules.shorten(rule.class_iri);
+  faults.error(rule.at,
+               "the class " + name + " of rule '" + rule.id +
+                   "' is not below clx:Object, so no question about objects would find what the rule makes",
+               "write in the ontology: " + name + " rdfs:subClassOf clx:Object, or a class that is below it");
+}
+
 /// `faulty`: rules of which some part was not read.
 void checkTogether(const GatheredRules& gathered, const RuleReading& reading, const RuleSet& rules,
                    const std::set<std::string>& faulty, FaultList& faults) {
@@ -192,6 +203,7 @@ void checkTogether(const GatheredRules& gathered, const RuleReading& reading, co
                    "the class " + rules.shorten(rule.class_iri) + " of rule '" + rule.id +
                        "' does not stand in 'order', so the rule never runs",
                    "add it to 'order'");
+    if (reading.options.requires_objects) checkIsObject(rule, rules, faults);
     checkEvidence(rule.evidence, rule, rules, faults);
     checkNodes(rule, rules, faults);
     if (!rule.nodes.empty() && !faulty.contains(rule.id)) checkMerges(rule, 0, false, faults);

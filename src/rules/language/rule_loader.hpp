@@ -17,7 +17,8 @@
 namespace cluxel::rules {
 
 struct RuleLoadOptions {
-  QueryCheck check_query;  ///< absent: the queries of `ask:` are not checked
+  QueryCheck check_query = {};    ///< absent: the queries of `ask:` are not checked
+  bool requires_objects = false;  ///< rules of a class that is not below clx:Object are refused
 };
 
 struct LoadedRules {
