@@ -3,6 +3,7 @@
 #include "mapping/map_inputs.hpp"
 
 #include <algorithm>
+#include <tuple>
 
 #include "base/file_bytes.hpp"
 #include "cluxel/error.hpp"
@@ -55,6 +56,16 @@ std::vector<NamedText> readRules(std::vector<fs::path> roots, const std::vector<
     if (std::none_of(texts.begin(), texts.end(), isSame)) texts.push_back({source.name, source.text});
   }
   return texts;
+}
+
+/// Each rule sees what earlier ones derived, so their order must not depend on how the files were given.
+std::vector<NamedText> readSparqlRules(const std::vector<fs::path>& files) {
+  std::vector<NamedText> rules = readAll(files);
+  std::sort(rules.begin(), rules.end(), [](const NamedText& a, const NamedText& b) {
+    const std::string name_a = ruleFileName(a), name_b = ruleFileName(b);
+    return std::tie(name_a, a.text, a.name) < std::tie(name_b, b.text, b.name);
+  });
+  return rules;
 }
 
 void addTexts(ContentHasher& hasher, const std::vector<NamedText>& texts) {
@@ -146,7 +157,8 @@ MapInputs withNamedFiles(MapInputs inputs, const MapInputFiles& files, const Dat
     inputs.rules = readRules(rules, inputs.ontology);
     inputs.rule_roots = rules.size();
   }
-  if (!files.sparql_rules.empty()) inputs.sparql_rules = readAll(givenOr(files.sparql_rules, "rules", ".rq", home));
+  if (!files.sparql_rules.empty())
+    inputs.sparql_rules = readSparqlRules(givenOr(files.sparql_rules, "rules", ".rq", home));
   if (files.model.empty()) return inputs;
   fs::path model = home.locate("models", files.model);
   if (fs::is_directory(model)) model /= "model.json";

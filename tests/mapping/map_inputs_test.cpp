@@ -4,6 +4,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
+#include "base/file_bytes.hpp"
+#include "mapping/inference/sparql_rules.hpp"
+#include "mapping/small_campus.hpp"
+#include "test_paths.hpp"
+
 namespace cluxel::mapping {
 namespace {
 
@@ -19,6 +26,65 @@ TEST(DescribedInputs, AreShortWithinTheDataHomeAndWholeElsewhere) {
   EXPECT_EQ(describeFiles(inputs),
             "data home /home; ontology ontology/core.ttl; rules /elsewhere/my.rules.yaml, rules/outdoor.rules.yaml; "
             "SPARQL rules none; model models/oakland/model.json");
+}
+
+TEST(MapInputs, HaveSparqlRulesInTheOrderOfTheirFileNames) {
+  const ScratchFolder folder;
+  const auto write = [&](const std::string& name, const std::string& text) {
+    std::filesystem::create_directories((folder.path() / name).parent_path());
+    writeFile(folder.path() / name, text);
+    return folder.path() / name;
+  };
+  std::vector<std::filesystem::path> files{write("b/10_first.rq", "ten"), write("a/20_second.rq", "twenty"),
+                                           write("a/30_same.rq", "y"), write("b/30_same.rq", "x")};
+  const DataHome home(test::sourceFolder());
+  ContentHash hash;
+  for (int order = 0; order < 4; ++order) {
+    MapInputFiles given;
+    given.sparql_rules = files;
+    const MapInputs inputs = readMapInputs(given, home);
+    std::string texts;
+    for (const NamedText& rule : inputs.sparql_rules) texts += rule.text + " ";
+    EXPECT_EQ(texts, "ten twenty x y ");
+    if (order == 0) hash = inputs.hash();
+    EXPECT_EQ(inputs.hash(), hash);
+    std::rotate(files.begin(), files.begin() + 1, files.end());
+  }
+}
+
+TEST(MapInputs, RefuseAFaultyOntologyWhenItIsRead) {
+  const ScratchFolder folder;
+  const std::filesystem::path shipped = test::sourceFolder() / "ontology", more = folder.path() / "bench.ttl";
+  writeFile(more,
+            "@prefix clx: <https://w3id.org/cluxel/ontology#> .\n"
+            "clx:Bench a <http://www.w3.org/2002/07/owl#Class> ;\n"
+            "  <http://www.w3.org/2000/01/rdf-schema#subClassOf> clx:StreetFurnitur .\n");
+  MapInputFiles files;
+  files.ontology = {shipped / "core.ttl", shipped / "outdoor.ttl", more};
+  try {
+    readMapInputs(files, DataHome(test::sourceFolder()));
+    FAIL() << "the superclass is misspelt";
+  } catch (const InputError& fault) {
+    EXPECT_EQ(fault.diagnostics().front().location.line, 3U) << fault.what();
+  }
+}
+
+TEST(MapInputs, WithNamesThatTheOntologyLacksAreNoted) {
+  class Notes : public ProgressSink {
+   public:
+    void note(std::string_view text) override { texts.emplace_back(text); }
+    std::vector<std::string> texts;
+  } notes;
+  MapInputs inputs = shippedInputs();
+  noteUnknownNames(inputs, notes);
+  EXPECT_TRUE(notes.texts.empty()) << notes.texts.front();
+  inputs.sparql_rules = {{"my.rq",
+                          "PREFIX clx: <https://w3id.org/cluxel/ontology#>\n"
+                          "CONSTRUCT { ?t a clx:Treee } WHERE { ?t a clx:Tree }"}};
+  noteUnknownNames(inputs, notes);
+  ASSERT_EQ(notes.texts.size(), 1U);
+  EXPECT_NE(notes.texts.front().find("my.rq:2:"), std::string::npos) << notes.texts.front();
+  EXPECT_NE(notes.texts.front().find("knows no class clx:Treee; did you mean 'Tree'"), std::string::npos);
 }
 
 }  // namespace

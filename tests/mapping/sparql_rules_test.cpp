@@ -261,6 +261,34 @@ TEST(SparqlRulesCheck, RefusesBlankNodesInTheTemplate) {
   expectRefusal("CONSTRUCT { ?t clx:partOf _:row } WHERE { ?t a clx:Tree }", "blank node");
 }
 
+void expectHistoryRefused(const std::string& text, const std::string& place) {
+  try {
+    checkNewSparqlRules({{"my-rule.rq", "PREFIX clx: <https://w3id.org/cluxel/ontology#>\n" + text}});
+    FAIL() << "accepted: " << text;
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find(place), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("rules see no history"), std::string::npos) << error.what();
+  }
+}
+
+TEST(SparqlRulesCheck, RefusesToNameTheHistory) {
+  const std::string history = "<https://w3id.org/cluxel/graph/history>";
+  expectHistoryRefused("CONSTRUCT { ?t clx:near ?t } WHERE {\n GRAPH " + history + " { ?t a clx:Tree } }",
+                       "my-rule.rq:3:8");
+  expectHistoryRefused("CONSTRUCT { ?t clx:near ?t }\nFROM " + history + " WHERE { ?t a clx:Tree }", "my-rule.rq:3:");
+  expectHistoryRefused("CONSTRUCT { ?t clx:near ?t } FROM NAMED " + history + " WHERE { GRAPH ?g { ?t a clx:Tree } }",
+                       "my-rule.rq:2:");
+  expectHistoryRefused("CONSTRUCT { ?t clx:near ?t } WHERE { ?t a clx:Tree FILTER NOT EXISTS { GRAPH " + history +
+                           " { ?t a clx:Tree } } }",
+                       "my-rule.rq:2:");
+  const std::vector<NamedText> any_graph{
+      {"any.rq", kQueryPrefixes + "CONSTRUCT { ?t clx:near ?t } WHERE { GRAPH ?g { ?t a clx:Tree } }"}};
+  EXPECT_NO_THROW(checkNewSparqlRules(any_graph)) << "it goes through the other graphs";
+  EXPECT_NO_THROW(checkSparqlRules(
+      {{"old.rq", kQueryPrefixes + "CONSTRUCT { ?t clx:near ?t } WHERE { GRAPH " + history + " { ?t a clx:Tree } }"}}))
+      << "a map of an earlier program may have it";
+}
+
 TEST(SparqlRulesCheck, RefusesWhatIsNoConstruct) {
   expectRefusal("SELECT ?s WHERE { ?s ?p ?o }", "CONSTRUCT");
   expectRefusal("ASK { ?s ?p ?o }", "CONSTRUCT");

@@ -260,6 +260,7 @@ BuildReport built(const scan::ScanSet& scans, const MapInputs& inputs, const fs:
   sink.note(describeFiles(complete));
   if (!complete.crs.empty()) sink.note("coordinate system of the map: " + complete.crs);
   checkNewSparqlRules(complete.sparql_rules);
+  noteUnknownNames(complete, sink);
   const ParsedInputs parsed = parseNewInputs(complete);
   // A faulty statement is refused before anything is written.
   for (const Statement& statement : statementsAmong(params.statements)) {

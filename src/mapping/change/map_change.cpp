@@ -212,8 +212,10 @@ ChangeReport appliedTo(const fs::path& file, const std::function<MapInputs(MapIn
   inputs.map_origin = editor.inputs().inputs.map_origin;
   inputs.crs = editor.inputs().inputs.crs;
   if (inputs.hash() == editor.inputs().inputs.hash()) return editor.takeReport();
-  if (inputs.sparql_rules != editor.inputs().inputs.sparql_rules) checkNewSparqlRules(inputs.sparql_rules);
   const MapInputs& before = editor.inputs().inputs;
+  const bool has_new_queries = inputs.sparql_rules != before.sparql_rules;
+  if (has_new_queries) checkNewSparqlRules(inputs.sparql_rules);
+  if (has_new_queries || inputs.ontology != before.ontology) noteUnknownNames(inputs, sink);
   const bool has_new_rules = inputs.rules != before.rules || inputs.ontology != before.ontology;
   editor.setInputs(has_new_rules ? parseNewInputs(inputs) : parseInputs(inputs));
   rdf::WriteTransaction transaction = editor.begin();

@@ -50,6 +50,17 @@ rules::RuleLoadOptions withCheckedQueries() {
   }};
 }
 
+rules::RuleLoadOptions withCheckedNewQueries() {
+  const rules::QueryCheck form = withCheckedQueries().check_query;
+  return {.check_query = [form](const std::string& query,
+                                const std::vector<std::string>& bound) -> std::optional<rules::QueryFault> {
+    if (auto fault = form(query, bound)) return fault;
+    if (const auto fault = historyNamedIn(sparql::parseQuery(query)))
+      return rules::QueryFault{fault->at, fault->message};
+    return std::nullopt;
+  }};
+}
+
 rules::RuleLoadOptions withCheckedQueries(const rdf::OntologyView& ontology) {
   const rules::QueryCheck form = withCheckedQueries().check_query;
   return {.check_query = [form, ontology](const std::string& query,

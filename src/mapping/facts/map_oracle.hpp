@@ -21,6 +21,9 @@ namespace cluxel::mapping {
 /// Options that report faulty queries of `ask:` when rules are loaded, and queries whose answer would not follow from
 /// the map alone.
 rules::RuleLoadOptions withCheckedQueries();
+/// The same for rules that no map has yet: their queries may not name the graph of the history, either, which they do
+/// not see.
+rules::RuleLoadOptions withCheckedNewQueries();
 /// The same, and queries that name classes or properties that the ontology does not know, or look in a FILTER at what
 /// nothing binds.
 rules::RuleLoadOptions withCheckedQueries(const rdf::OntologyView& ontology);

@@ -27,9 +27,15 @@ class QueryNameCheck {
       if (std::find(bound.begin(), bound.end(), query.variables[i].name) != bound.end()) bound_.insert(i);
   }
 
+  const std::optional<QueryNameFault>& history() const { return history_; }
+
   std::vector<QueryNameFault> run() {
     for (const ast::TriplePattern& triple : query_.construct_template) names(triple);
     group(query_.select.where, bound_);
+    const std::vector<Term>& merged = query_.dataset.default_graphs;
+    const std::vector<Term>& named = query_.dataset.named_graphs;
+    for (const std::vector<Term>* graphs : {&merged, &named})
+      if (std::any_of(graphs->begin(), graphs->end(), isHistory)) addHistory(query_.dataset.at);
     std::sort(faults_.begin(), faults_.end(), [](const auto& a, const auto& b) { return a.at < b.at; });
     return std::move(faults_);
   }
@@ -106,6 +112,7 @@ class QueryNameCheck {
     if (const auto* minus = std::get_if<ast::MinusPattern>(&element.value)) group(minus->group, bound_);
     if (const auto* named = std::get_if<ast::GraphPattern>(&element.value)) {
       addIfVariable(named->graph, bound);
+      if (!named->graph.isVariable() && isHistory(named->graph.term())) addHistory(named->graph.at);
       merge(named->group, bound_, bound);
     }
     if (const auto* service = std::get_if<ast::ServicePattern>(&element.value)) merge(service->group, bound_, bound);
@@ -117,6 +124,13 @@ class QueryNameCheck {
       group(inner->select->where, bound_);
       for (const ast::Projection& column : inner->select->projection) bound.insert(column.variable);
     }
+  }
+
+  static bool isHistory(const Term& graph) { return graph.text == rdf::vocabulary::kGraphHistory; }
+
+  void addHistory(ast::SourceOffset at) {
+    faults_.push_back({at, "rules see no history: it would make the map depend on how it was built"});
+    if (!history_) history_ = faults_.back();
   }
 
   void check(const ast::Expression& expression, const Variables& bound) {
@@ -134,6 +148,7 @@ class QueryNameCheck {
   std::vector<std::string> properties_;
   Variables bound_;
   std::vector<QueryNameFault> faults_;
+  std::optional<QueryNameFault> history_;
 };
 
 }  // namespace
@@ -143,20 +158,25 @@ std::vector<QueryNameFault> faultsOfNames(const ast::Query& query, const rdf::On
   return QueryNameCheck(query, ontology, bound).run();
 }
 
+std::optional<QueryNameFault> historyNamedIn(const ast::Query& query) {
+  const rdf::OntologyView none;
+  QueryNameCheck check(query, none, {});
+  check.run();
+  return check.history();
+}
+
+SourceLocation placeIn(const ast::Query& query, const std::string& name, ast::SourceOffset at) {
+  return locate(name, query.text, at);
+}
+
 std::vector<Diagnostic> checkRuleNames(const std::string& name, const std::string& text,
                                        const rdf::OntologyView& ontology) {
   sparql::SparqlParseOptions options;
   options.file = name;
   const ast::Query query = sparql::parseQuery(text, options);
   FaultList faults(name, text);
-  for (const QueryNameFault& fault : faultsOfNames(query, ontology)) {
-    SourceLocation at;
-    at.file = name;
-    at.line = 1 + static_cast<std::size_t>(std::count(query.text.begin(), query.text.begin() + fault.at, '\n'));
-    const std::size_t before = fault.at == 0 ? std::string::npos : query.text.rfind('\n', fault.at - 1);
-    at.column = before == std::string::npos ? fault.at + 1 : fault.at - before;
-    faults.error(at, fault.message);
-  }
+  for (const QueryNameFault& fault : faultsOfNames(query, ontology))
+    faults.error(placeIn(query, name, fault.at), fault.message);
   return faults.sorted();
 }
 

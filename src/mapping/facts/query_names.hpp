@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Names in queries that cannot match anything: classes and properties that the ontology does not know, and variables of
-// a FILTER that nothing binds.
+// Names in queries that cannot match anything: classes and properties that the ontology does not know, variables of a
+// FILTER that nothing binds, and the graph of the history.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -24,8 +25,14 @@ struct QueryNameFault {
 std::vector<QueryNameFault> faultsOfNames(const sparql::ast::Query& query, const rdf::OntologyView& ontology,
                                           std::span<const std::string> bound = {});
 
+/// Where the query of a rule names the graph of the history, which rules do not see: what is built and when may not
+/// change what follows from the scans. A variable graph (GRAPH ?g) goes through the others.
+std::optional<QueryNameFault> historyNamedIn(const sparql::ast::Query& query);
+
 /// The faults of a SPARQL rule with their places. Throws InputError when it cannot be parsed.
 std::vector<Diagnostic> checkRuleNames(const std::string& name, const std::string& text,
                                        const rdf::OntologyView& ontology);
+/// The place of a byte of the query's text.
+SourceLocation placeIn(const sparql::ast::Query& query, const std::string& name, sparql::ast::SourceOffset at);
 
 }  // namespace cluxel::mapping

@@ -115,7 +115,7 @@ ParsedInputs parseInputs(const MapInputs& inputs) {
 }
 
 ParsedInputs parseNewInputs(const MapInputs& inputs) {
-  rules::RuleLoadOptions options = withCheckedQueries();
+  rules::RuleLoadOptions options = withCheckedNewQueries();
   options.requires_objects = true;
   return parsedWith(inputs, options);
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "cluxel/error.hpp"
+#include "mapping/facts/query_names.hpp"
 #include "mapping/inference/read_test.hpp"
 #include "mapping/inference/rule_limits.hpp"
 #include "rdf/ontology/ontology.hpp"
@@ -34,6 +35,14 @@ void refuseBlankNodes(const NamedText& rule) {
     if (isBlank(triple.subject) || isBlank(triple.object))
       throw InputError({.file = rule.name}, "the template of a SPARQL rule may not make a blank node",
                        "name the new thing by clx:newObject(class, thing) in a BIND");
+}
+
+void refuseHistory(const NamedText& rule) {
+  sparql::SparqlParseOptions options;
+  options.file = rule.name;
+  const sparql::ast::Query query = parseQuery(rule.text, options);
+  if (const auto fault = historyNamedIn(query))
+    throw InputError(placeIn(query, rule.name, fault->at), fault->message, "leave the graph out");
 }
 
 /// Whether some graph but history has the fact. History is not part of the map function.
@@ -160,7 +169,18 @@ void checkSparqlRules(const std::vector<NamedText>& rules) {
 
 void checkNewSparqlRules(const std::vector<NamedText>& rules) {
   checkSparqlRules(rules);
-  for (const NamedText& rule : rules) refuseUnboundPaths(shapeOf(rule).query, rule);
+  for (const NamedText& rule : rules) {
+    refuseUnboundPaths(shapeOf(rule).query, rule);
+    refuseHistory(rule);
+  }
+}
+
+void noteUnknownNames(const MapInputs& inputs, ProgressSink& sink) {
+  if (inputs.sparql_rules.empty()) return;
+  const rdf::OntologyView ontology = ontologyViewOf(ontologySources(inputs.ontology));
+  for (const NamedText& rule : inputs.sparql_rules)
+    for (const Diagnostic& fault : checkRuleNames(rule.name, rule.text, ontology))
+      sink.note(toString(fault.location) + ": " + fault.message);
 }
 
 InferenceRecord runSparqlRules(rdf::WriteTransaction& transaction, const std::vector<NamedText>& rules,
