@@ -31,9 +31,11 @@ const char* nameOf(ChangeKind kind) {
     case ChangeKind::Split:
       return "split";
     case ChangeKind::Joined:
+      return "joined";
+    case ChangeKind::Redecided:
       break;
   }
-  return "joined";
+  return "redecided";
 }
 
 /// Runs a change without the GIL.
@@ -85,7 +87,8 @@ void bindValues(py::module_& module) {
   py::class_<ObjectChange>(module, "ObjectChange", "An object that a change added, removed or altered.")
       .def_property_readonly(
           "kind", [](const ObjectChange& change) { return nameOf(change.kind); },
-          "'added', 'gone', 'changed', 'split' or 'joined'.")
+          "'added', 'gone', 'changed', 'split', 'joined' or 'redecided': the same members and class, and other parts,\n"
+          "another rule or another confidence.")
       .def_readonly("iri", &ObjectChange::iri, "Its IRI; of a gone object the one that it had.")
       .def_readonly("class_name", &ObjectChange::class_name, "Local name of its class, such as 'Tree'.")
       .def_readonly("derived_from", &ObjectChange::derived_from, "IRIs of the objects before the change.");

@@ -28,8 +28,9 @@ struct CloudPose {
 };
 
 /// Added: continues no object. Gone: no object continues it. Changed: continues one, with other members or another
-/// class. Split: one of several objects that continue one. Joined: continues several.
-enum class ChangeKind : std::uint8_t { Added, Gone, Changed, Split, Joined };
+/// class. Split: one of several objects that continue one. Joined: continues several. Redecided: has the same members
+/// and class, and other parts, another rule or another confidence.
+enum class ChangeKind : std::uint8_t { Added, Gone, Changed, Split, Joined, Redecided };
 
 /// An object that a change added, removed or altered.
 struct ObjectChange {
@@ -43,8 +44,8 @@ struct ObjectChange {
 /// Cluxels are matched by seed point, and by position where seed points match no object.
 struct MapChanges {
   std::size_t scans_added = 0, scans_already_there = 0, scans_removed = 0, scans_moved = 0;
-  std::size_t tiles_changed = 0;  ///< tiles of 16 m of which something was computed anew and differs
-  std::size_t objects_unchanged = 0;
+  std::size_t tiles_changed = 0;      ///< tiles of 16 m of which something was computed anew and differs
+  std::size_t objects_unchanged = 0;  ///< without those of ChangeKind::Redecided
   std::vector<ObjectChange> objects;  ///< by kind, then by IRI
 };
 

@@ -62,6 +62,8 @@ MapChanges changesOf(const mapping::ChangeReport& report) {
     add(ChangeKind::Changed, object.id, after.at(object.id), object.from);
   for (const auto& object : report.objects.split) add(ChangeKind::Split, object.id, after.at(object.id), object.from);
   for (const auto& object : report.objects.joined) add(ChangeKind::Joined, object.id, after.at(object.id), object.from);
+  for (const auto& object : report.objects.redecided)
+    add(ChangeKind::Redecided, object.after.id, mapping::localName(object.after.class_iri), {});
   return changes;
 }
 

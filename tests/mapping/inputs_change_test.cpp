@@ -2,6 +2,8 @@
 // Other rules, models and ontologies give the map of a build with them.
 #include <gtest/gtest.h>
 
+#include <tuple>
+
 #include "mapping/map_change_fixture.hpp"
 
 namespace cluxel::mapping {
@@ -73,6 +75,66 @@ TEST_F(InputsChange, AnotherModelGivesTheBuildWithThisModel) {
     EXPECT_EQ(report.objects.added, whole.objects.added);
     EXPECT_EQ(report.objects.gone, whole.objects.gone);
     EXPECT_EQ(report.objects.unchanged, whole.objects.unchanged);
+  }
+}
+
+/// How many objects have the same id in both maps, and other parts, another rule or another confidence.
+std::size_t redecidedBetween(const std::filesystem::path& a, const std::filesystem::path& b) {
+  const auto decisionsOf = [](const std::filesystem::path& file) {
+    std::map<ContentHash, std::tuple<std::string, double, std::map<std::uint32_t, std::string>>> decisions;
+    const MapReader map(file);
+    for (const rules::SemanticObject& object : map.objects()) {
+      if (object.is_class_wide) continue;
+      auto& [rule, confidence, part_of] = decisions[object.id];
+      rule = object.rule_id, confidence = object.confidence;
+      for (const rules::ObjectPart& part : object.parts)
+        for (const std::uint32_t cluxel : part.cluxels) part_of[cluxel] = part.part_class;
+    }
+    return decisions;
+  };
+  const auto before = decisionsOf(a), after = decisionsOf(b);
+  return static_cast<std::size_t>(std::count_if(before.begin(), before.end(), [&](const auto& object) {
+    const auto same = after.find(object.first);
+    return same != after.end() && same->second != object.second;
+  }));
+}
+
+std::string replacedAll(std::string text, const std::string& from, const std::string& to) {
+  for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
+    text.replace(at, from.size(), to);
+  return text;
+}
+
+TEST_F(InputsChange, ObjectsThatAreDecidedOtherwiseAreReported) {
+  const SmallCampus dense({.seed = 5, .stops = 2, .size_m = 45, .points_per_stop = 15000});
+  buildMap(scansOf(dense.files()), *inputs, map(), {}, silence());
+  const std::filesystem::path before = folder.path() / "before.clx";
+  std::filesystem::copy_file(map(), before);
+  const std::string shipped = inputs->rules.front().text;
+  const std::string swapped =
+      replacedAll(shipped, "{ trunk: clx:TreeTrunk, top: clx:TreeTop }", "{ trunk: clx:TreeTop, top: clx:TreeTrunk }");
+  const std::string surer = replacedAll(shipped, "confidence: { from: 0.8,", "confidence: { from: 0.7,");
+  for (const std::string& text : {swapped, surer, shipped}) {
+    MapInputs other = *inputs;
+    other.rules.front().text = text + "\n# others\n";
+    buildMap(scansOf(dense.files()), other, folder.path() / "other.clx", {.force = true}, silence());
+    const std::size_t expected = redecidedBetween(before, folder.path() / "other.clx");
+    EXPECT_EQ(expected > 0, text != shipped);
+    // In a window, at once, and in strips.
+    const ChangeParams params[] = {{.dry_run = true, .max_window_share = 2},
+                                   {.dry_run = true, .max_window_share = 0},
+                                   {.dry_run = true, .max_window_share = 0, .whole_cluxels = 10}};
+    for (const ChangeParams& how : params) {
+      const ChangeReport report = applyInputs(map(), always(other), how, silence());
+      EXPECT_EQ(report.objects.redecided.size(), expected);
+      EXPECT_EQ(report.objects.unchanged + report.objects.redecided.size() + report.objects.added.size() +
+                    report.objects.changed.size() + report.objects.split.size() + report.objects.joined.size(),
+                report.object_count);
+      for (const RedecidedObject& object : report.objects.redecided) {
+        EXPECT_EQ(object.before.id, object.after.id);
+        EXPECT_FALSE(object.after.class_iri.empty());
+      }
+    }
   }
 }
 

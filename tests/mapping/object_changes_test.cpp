@@ -16,6 +16,57 @@ ContentHash idNamed(const std::string& name) {
   return ContentHasher().addText(name).finish();
 }
 
+ObjectMembers decided(const std::string& name, double confidence) {
+  ObjectMembers object{idNamed(name), "Tree", {1, 2}};
+  object.confidence = confidence;
+  return object;
+}
+
+TEST(ObjectChanges, TellWhatIsDecidedOtherwise) {
+  const std::string trunk = "clx:TreeTrunk", top = "clx:TreeTop";
+  ObjectMembers swapped = decided("swapped", 0.9), was_swapped = swapped, other_order = decided("order", 0.9),
+                order = other_order;
+  swapped.addToPart(partKey(trunk), 1), swapped.addToPart(partKey(top), 2);
+  was_swapped.addToPart(partKey(top), 1), was_swapped.addToPart(partKey(trunk), 2);
+  order.addToPart(partKey(top), 1), order.addToPart(partKey(trunk), 2);
+  other_order.addToPart(partKey(trunk), 2), other_order.addToPart(partKey(top), 1);
+  std::vector<ObjectMembers> before{decided("same", 0.5), decided("surer", 0.5), decided("gone", 0.5), was_swapped,
+                                    order};
+  std::vector<ObjectMembers> after{decided("same", 0.5), decided("surer", 0.6), decided("new", 0.5), swapped,
+                                   other_order};
+  const auto byId = [](const ObjectMembers& a, const ObjectMembers& b) { return a.id < b.id; };
+  std::sort(before.begin(), before.end(), byId), std::sort(after.begin(), after.end(), byId);
+  const DifferentObjects different = differenceOf(before, after);
+  ASSERT_EQ(different.before.size(), 1U);
+  EXPECT_EQ(different.before.front().id, idNamed("gone"));
+  ASSERT_EQ(different.after.size(), 1U);
+  EXPECT_EQ(different.after.front().id, idNamed("new"));
+  std::vector<ContentHash> redecided;
+  for (const RedecidedObject& object : different.redecided) redecided.push_back(object.after.id);
+  std::vector<ContentHash> expected{idNamed("surer"), idNamed("swapped")};
+  std::sort(expected.begin(), expected.end());
+  EXPECT_EQ(redecided, expected);
+}
+
+TEST(ObjectChanges, OfSeveralChangesCompareTheFirstWithTheLast) {
+  ObjectDifference difference;
+  difference.add(
+      {{}, {}, {{decided("back", 0.5), decided("back", 0.6)}, {decided("goes", 0.5), decided("goes", 0.6)}}});
+  difference.add({{decided("leaves", 0.5)}, {decided("new", 0.5)}, {{decided("back", 0.6), decided("back", 0.5)}}});
+  difference.add({{decided("goes", 0.6)}, {decided("leaves", 0.7)}, {{decided("new", 0.5), decided("new", 0.8)}}});
+  const DifferentObjects all = std::move(difference).take();
+  ASSERT_EQ(all.before.size(), 1U);
+  EXPECT_EQ(all.before.front().id, idNamed("goes"));
+  EXPECT_EQ(all.before.front().confidence, 0.5);
+  ASSERT_EQ(all.after.size(), 1U);
+  EXPECT_EQ(all.after.front().id, idNamed("new"));
+  EXPECT_EQ(all.after.front().confidence, 0.8);
+  ASSERT_EQ(all.redecided.size(), 1U) << "that which came back otherwise";
+  EXPECT_EQ(all.redecided.front().after.id, idNamed("leaves"));
+  EXPECT_EQ(all.redecided.front().before.confidence, 0.5);
+  EXPECT_EQ(all.redecided.front().after.confidence, 0.7);
+}
+
 TEST(ObjectChanges, TellAddedGoneChangedSplitAndJoined) {
   const auto object = [](const std::string& name, std::vector<std::uint64_t> seeds) {
     return ObjectMembers{idNamed(name), "Tree", std::move(seeds)};

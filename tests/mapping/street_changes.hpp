@@ -97,8 +97,9 @@ inline std::map<std::string, int> differingTables(const std::filesystem::path& a
 
 /// How many objects a change reports, by kind.
 inline std::map<std::string, std::size_t> countsOf(const ObjectChanges& changes) {
-  return {{"unchanged", changes.unchanged},    {"added", changes.added.size()}, {"gone", changes.gone.size()},
-          {"changed", changes.changed.size()}, {"split", changes.split.size()}, {"joined", changes.joined.size()}};
+  return {{"unchanged", changes.unchanged},       {"added", changes.added.size()}, {"gone", changes.gone.size()},
+          {"changed", changes.changed.size()},    {"split", changes.split.size()}, {"joined", changes.joined.size()},
+          {"redecided", changes.redecided.size()}};
 }
 
 /// How changes are computed.

@@ -48,6 +48,20 @@ Json objectsJson(const std::vector<DerivedObject>& objects, const std::map<Conte
   return json;
 }
 
+Json redecidedJson(const std::vector<mapping::RedecidedObject>& objects) {
+  const auto decisionOf = [](const ObjectMembers& object) {
+    return Json{{"rule", object.rule_id}, {"confidence", object.confidence}};
+  };
+  Json json = Json::array();
+  for (const auto& [before, after] : objects)
+    json.push_back({{"object", after.id.hex()},
+                    {"class", mapping::localName(after.class_iri)},
+                    {"other_parts", before.parts != after.parts},
+                    {"before", decisionOf(before)},
+                    {"after", decisionOf(after)}});
+  return json;
+}
+
 Json statementsJson(const std::vector<mapping::StatementOutcome>& outcomes) {
   Json json = Json::array();
   for (const mapping::StatementOutcome& outcome : outcomes) json.push_back(jsonOf(outcome));
@@ -75,9 +89,27 @@ void printJsonReport(const fs::path& map, const ChangeReport& report, bool dry_r
                   {{"unchanged", report.objects.unchanged},
                    {"added", objectsJson(report.objects.added, after)},
                    {"gone", objectsJson(report.objects.gone, before)},
+                   {"redecided", redecidedJson(report.objects.redecided)},
                    {"changed", objectsJson(report.objects.changed, after, before)},
                    {"split", objectsJson(report.objects.split, after, before)},
                    {"joined", objectsJson(report.objects.joined, after, before)}}}});
+}
+
+/// ": 3 Tree, 1 Bush (other parts: 3, another rule: 1, another confidence: 2)".
+std::string redecidedByClass(const std::vector<mapping::RedecidedObject>& objects) {
+  if (objects.empty()) return "";
+  std::map<ContentHash, std::string> classes;
+  std::vector<ContentHash> ids;
+  std::size_t parts = 0, rules = 0, confidences = 0;
+  for (const auto& [before, after] : objects) {
+    classes.emplace(after.id, mapping::localName(after.class_iri));
+    ids.push_back(after.id);
+    parts += before.parts != after.parts ? 1 : 0;
+    rules += before.rule_id != after.rule_id ? 1 : 0;
+    confidences += before.confidence != after.confidence ? 1 : 0;
+  }
+  return byClass(ids, classes, [](const ContentHash& id) { return id; }) + " (other parts: " + std::to_string(parts) +
+         ", another rule: " + std::to_string(rules) + ", another confidence: " + std::to_string(confidences) + ")";
 }
 
 }  // namespace
@@ -106,6 +138,7 @@ void printChange(const fs::path& map, const ChangeReport& report, const mapping:
       map.c_str(), params.dry_run ? " (dry run, nothing written)" : "", report.scans_added, report.scans_removed,
       report.scans_moved, report.tiles_changed, report.tiles_decided, report.tiles);
   std::printf("objects: %zu unchanged\n", objects.unchanged);
+  std::printf("  %zu redecided%s\n", objects.redecided.size(), redecidedByClass(objects.redecided).c_str());
   std::printf("  %zu added%s\n", objects.added.size(), byClass(objects.added, after, own).c_str());
   std::printf("  %zu gone%s\n", objects.gone.size(), byClass(objects.gone, before, own).c_str());
   std::printf("  %zu changed%s\n", objects.changed.size(), byClass(objects.changed, after, derived).c_str());

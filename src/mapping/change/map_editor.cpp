@@ -226,12 +226,12 @@ SemanticUpdate MapEditor::decideInParts(rdf::WriteTransaction& transaction, std:
     update = updateSemanticLayer(transaction, parsed_, *stages_, is_local ? ChangedInputs::Scans : ChangedInputs::Any,
                                  params, sink);
     stages_->dropAll();
-    difference.add(std::move(update.before), std::move(update.after));
+    difference.add(std::move(static_cast<DifferentObjects&>(update)));
     is_local = is_local && update.is_local;
     decided += update.tiles_decided;
   }
   update.is_local = is_local, update.tiles_decided = decided;
-  std::tie(update.before, update.after) = std::move(difference).take();
+  static_cast<DifferentObjects&>(update) = std::move(difference).take();
   return update;
 }
 
@@ -271,13 +271,16 @@ void MapEditor::commit(rdf::WriteTransaction& transaction, const std::string& op
 }
 
 void MapEditor::note(SemanticUpdate update) {
-  if (!defers_things_) difference_.add(std::move(update.before), std::move(update.after));
+  if (!defers_things_) difference_.add(std::move(static_cast<DifferentObjects&>(update)));
 }
 
 ChangeReport MapEditor::takeReport() {
   if (!defers_things_ && report_.has_changes) {
-    std::tie(report_.before, report_.after) = std::exchange(difference_, {}).take();
+    DifferentObjects different = std::exchange(difference_, {}).take();
+    report_.before = std::move(different.before), report_.after = std::move(different.after);
     report_.objects = compareStates(report_.before, report_.after, report_.object_count - report_.after.size());
+    report_.objects.unchanged -= different.redecided.size();
+    report_.objects.redecided = std::move(different.redecided);
   }
   return std::move(report_);
 }

@@ -3,6 +3,7 @@
 #include "mapping/change/object_changes.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <iterator>
 #include <set>
@@ -44,6 +45,21 @@ std::uint64_t memberKey(const ContentHash& scan, std::uint32_t point) {
   return key ^ (static_cast<std::uint64_t>(point) + 1) * 0x9E3779B97F4A7C15ULL;
 }
 
+std::uint64_t partKey(const std::string& part_class) {
+  return memberKey(ContentHasher().addText(part_class).finish(), 0);
+}
+
+/// A sum, because members come in no order; the product ties each to its part.
+void ObjectMembers::addToPart(std::uint64_t part, std::uint64_t seed) {
+  const std::uint64_t mixed = (seed ^ part) * 0x9E3779B97F4A7C15ULL;
+  parts += mixed ^ (mixed >> 32U);
+}
+
+bool ObjectMembers::isDecidedAs(const ObjectMembers& other) const {
+  constexpr double rounding = 1e-9;
+  return rule_id == other.rule_id && parts == other.parts && std::abs(confidence - other.confidence) <= rounding;
+}
+
 std::vector<ObjectMembers> membersOf(const std::vector<rules::SemanticObject>& objects,
                                      const perception::SceneCluxels& cluxels) {
   std::vector<ObjectMembers> all;
@@ -51,15 +67,20 @@ std::vector<ObjectMembers> membersOf(const std::vector<rules::SemanticObject>& o
   for (const rules::SemanticObject& object : objects) {
     ObjectMembers members{object.id, object.class_iri, {}, {}};
     std::size_t count = 0;
+    if (!object.is_class_wide) members.rule_id = object.rule_id, members.confidence = object.confidence;
     for (const rules::ObjectPart& part : object.parts) count += part.cluxels.size();
     members.seeds.reserve(count);
     if (!object.is_class_wide) members.places.reserve(count);
-    for (const rules::ObjectPart& part : object.parts)
+    for (const rules::ObjectPart& part : object.parts) {
+      const std::uint64_t part_key = partKey(part.part_class);
       for (const std::uint32_t cluxel : part.cluxels) {
         const perception::SeedName& seed = cluxels.seed[cluxel];
         members.seeds.push_back(memberKey(cluxels.scans[seed.scan], seed.point));
-        if (!object.is_class_wide) members.places.push_back(placeOf(cluxels.center[cluxel]));
+        if (object.is_class_wide) continue;
+        members.addToPart(part_key, members.seeds.back());
+        members.places.push_back(placeOf(cluxels.center[cluxel]));
       }
+    }
     all.push_back(std::move(members));
   }
   return all;
@@ -115,33 +136,78 @@ ObjectChanges compareStates(const std::vector<ObjectMembers>& before, const std:
   return changes;
 }
 
-void ObjectDifference::add(std::vector<ObjectMembers> before, std::vector<ObjectMembers> after) {
-  for (ObjectMembers& object : before)
-    if (fresh_.erase(object.id) == 0) gone_.emplace(object.id, std::move(object));
-  for (ObjectMembers& object : after)
-    if (gone_.erase(object.id) == 0) fresh_.emplace(object.id, std::move(object));
-}
-
 namespace {
+
+ObjectMembers withoutMembers(ObjectMembers object) {
+  object.seeds = {}, object.places = {};
+  return object;
+}
 
 std::vector<ObjectMembers> valuesOf(std::map<ContentHash, ObjectMembers> objects) {
   std::vector<ObjectMembers> values;
+  values.reserve(objects.size());
   for (auto& [id, object] : objects) values.push_back(std::move(object));
   return values;
 }
 
 }  // namespace
 
-std::pair<std::vector<ObjectMembers>, std::vector<ObjectMembers>> ObjectDifference::take() && {
-  return {valuesOf(std::move(gone_)), valuesOf(std::move(fresh_))};
+/// The object is there before and after, with the same members.
+void ObjectDifference::setAfter(const ContentHash& id, ObjectMembers before, ObjectMembers after) {
+  redecided_.erase(id);
+  if (!before.isDecidedAs(after))
+    redecided_.emplace(id, RedecidedObject{withoutMembers(std::move(before)), withoutMembers(std::move(after))});
 }
 
-void keepDifferent(std::vector<ObjectMembers>& before, std::vector<ObjectMembers>& after) {
-  std::set<ContentHash> ids_before, ids_after;
-  for (const ObjectMembers& object : before) ids_before.insert(object.id);
-  for (const ObjectMembers& object : after) ids_after.insert(object.id);
-  std::erase_if(before, [&](const ObjectMembers& object) { return ids_after.contains(object.id); });
-  std::erase_if(after, [&](const ObjectMembers& object) { return ids_before.contains(object.id); });
+void ObjectDifference::add(DifferentObjects change) {
+  for (ObjectMembers& object : change.before) {
+    if (fresh_.erase(object.id) > 0) continue;
+    if (const auto other = redecided_.extract(object.id)) {
+      const ObjectMembers& first = other.mapped().before;
+      object.rule_id = first.rule_id, object.confidence = first.confidence, object.parts = first.parts;
+    }
+    gone_.emplace(object.id, std::move(object));
+  }
+  for (ObjectMembers& object : change.after) {
+    const ContentHash id = object.id;
+    if (auto former = gone_.extract(id))
+      setAfter(id, std::move(former.mapped()), std::move(object));
+    else
+      fresh_.emplace(id, std::move(object));
+  }
+  for (RedecidedObject& object : change.redecided) {
+    const ContentHash id = object.after.id;
+    if (const auto made = fresh_.find(id); made != fresh_.end()) {
+      made->second.rule_id = object.after.rule_id, made->second.confidence = object.after.confidence;
+      made->second.parts = object.after.parts;
+      continue;
+    }
+    const auto known = redecided_.find(id);
+    setAfter(id, known != redecided_.end() ? known->second.before : object.before, std::move(object.after));
+  }
+}
+
+DifferentObjects ObjectDifference::take() && {
+  DifferentObjects all{valuesOf(std::move(gone_)), valuesOf(std::move(fresh_)), {}};
+  for (auto& [id, object] : redecided_) all.redecided.push_back(std::move(object));
+  return all;
+}
+
+DifferentObjects differenceOf(std::vector<ObjectMembers> before, std::vector<ObjectMembers> after) {
+  DifferentObjects different;
+  auto a = after.begin();
+  for (ObjectMembers& object : before) {
+    for (; a != after.end() && a->id < object.id; ++a) different.after.push_back(std::move(*a));
+    if (a == after.end() || a->id != object.id) {
+      different.before.push_back(std::move(object));
+      continue;
+    }
+    if (!object.isDecidedAs(*a))
+      different.redecided.push_back({withoutMembers(std::move(object)), withoutMembers(std::move(*a))});
+    ++a;
+  }
+  for (; a != after.end(); ++a) different.after.push_back(std::move(*a));
+  return different;
 }
 
 }  // namespace cluxel::mapping

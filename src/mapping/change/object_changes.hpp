@@ -28,12 +28,21 @@ struct ObjectMembers {
   /// One place per seed. kNoMemberPlace: the change leaves the tile of this cluxel as it is. Empty when this holds for
   /// all its tiles, and for class-wide objects, which are matched by name.
   std::vector<MemberPlace> places = {};
+  /// How it was decided: comparable between objects of the same id. Of class-wide objects, which hold all of a map, it
+  /// is left as it is.
+  std::string rule_id = {};
+  double confidence = 0;
+  std::uint64_t parts = 0;  ///< a hash of which member is of which part
 
+  void addToPart(std::uint64_t part, std::uint64_t seed);
+  bool isDecidedAs(const ObjectMembers& other) const;
   MemberPlace placeOf(std::size_t member) const { return places.empty() ? kNoMemberPlace : places[member]; }
 };
 
 /// The hash of a seed point.
 std::uint64_t memberKey(const ContentHash& scan, std::uint32_t point);
+/// The hash of a class of parts, for ObjectMembers::addToPart().
+std::uint64_t partKey(const std::string& part_class);
 
 std::vector<ObjectMembers> membersOf(const std::vector<rules::SemanticObject>& objects,
                                      const perception::SceneCluxels& cluxels);
@@ -47,14 +56,23 @@ struct DerivedObject {
   std::vector<ContentHash> from;  ///< ascending
 };
 
+/// An object with the same class and members before and after, and with other parts, another rule or another
+/// confidence.
+struct RedecidedObject {
+  ObjectMembers before, after;  ///< without members
+};
+
 struct ObjectChanges {
-  std::size_t unchanged = 0;
+  std::size_t unchanged = 0;             ///< redecided ones do not count
   std::vector<ContentHash> added, gone;  ///< continues no object before; is continued by none after
   std::vector<DerivedObject> changed;    ///< other members or another class, and one predecessor
   std::vector<DerivedObject> split;      ///< the parts of an object that has become several
   std::vector<DerivedObject> joined;     ///< made of several objects
+  std::vector<RedecidedObject> redecided;
 
-  bool isEmpty() const { return added.empty() && gone.empty() && changed.empty() && split.empty() && joined.empty(); }
+  bool isEmpty() const {
+    return added.empty() && gone.empty() && changed.empty() && split.empty() && joined.empty() && redecided.empty();
+  }
 };
 
 /// Compares the objects before and after a change, by successorsOf(). Lists are sorted by id. `before` may hold the
@@ -66,19 +84,26 @@ ObjectChanges compareObjects(const std::vector<ObjectMembers>& before, const std
 ObjectChanges compareStates(const std::vector<ObjectMembers>& before, const std::vector<ObjectMembers>& after,
                             std::size_t others = 0);
 
+/// The objects that differ, each list sorted by id.
+struct DifferentObjects {
+  std::vector<ObjectMembers> before, after;
+  std::vector<RedecidedObject> redecided;
+};
+
 /// The objects that differ after several changes in turn. What came and went again is no difference.
 class ObjectDifference {
  public:
-  /// The objects that one change took away, and those that it made.
-  void add(std::vector<ObjectMembers> before, std::vector<ObjectMembers> after);
-  /// Objects before and after, sorted by id.
-  std::pair<std::vector<ObjectMembers>, std::vector<ObjectMembers>> take() &&;
+  void add(DifferentObjects change);
+  DifferentObjects take() &&;
 
  private:
+  void setAfter(const ContentHash& id, ObjectMembers before, ObjectMembers after);
+
   std::map<ContentHash, ObjectMembers> gone_, fresh_;
+  std::map<ContentHash, RedecidedObject> redecided_;
 };
 
-/// Leaves out what is in both lists; both are sorted by id.
-void keepDifferent(std::vector<ObjectMembers>& before, std::vector<ObjectMembers>& after);
+/// What differs between the objects of `before` and `after`, both sorted by id.
+DifferentObjects differenceOf(std::vector<ObjectMembers> before, std::vector<ObjectMembers> after);
 
 }  // namespace cluxel::mapping

@@ -67,7 +67,7 @@ class GrowthUpdate {
       is_first = false;
       update.tiles_decided += decided->tiles_decided;
       update.objects = decided->objects, update.cluxels = decided->cluxels, update.primitives = decided->primitives;
-      difference_.add(std::move(decided->before), std::move(decided->after));
+      difference_.add(std::move(static_cast<DifferentObjects&>(*decided)));
       strip_.told_clouds = seenClouds(storedClouds(transaction_));
       returnFreeMemory();
     }
@@ -142,12 +142,12 @@ class GrowthUpdate {
     for (const TileKey& tile : new_) noteChange(tile, true, rest);
     for (const TileKey& tile : other_) noteChange(tile, hidden_.contains(tile), rest);
     SemanticUpdate update = updateAll(work_, rest);
-    difference_.add(std::exchange(update.before, {}), std::exchange(update.after, {}));
+    difference_.add(std::move(static_cast<DifferentObjects&>(update)));
     return withLists(std::move(update));
   }
 
   SemanticUpdate withLists(SemanticUpdate update) {
-    std::tie(update.before, update.after) = std::move(difference_).take();
+    static_cast<DifferentObjects&>(update) = std::move(difference_).take();
     return update;
   }
 

@@ -221,8 +221,8 @@ SemanticUpdate updateAll(const LayerWork& work, const OutputChanges& changes) {
   }
   std::optional<SemanticUpdate> update = updateInStrips(work);
   if (!update) update = updateAtOnce(work);
-  update->before = std::move(before);
-  keepDifferent(update->before, update->after);
+  DifferentObjects& different = *update;
+  different = differenceOf(std::move(before), std::move(different.after));
   return *std::move(update);
 }
 

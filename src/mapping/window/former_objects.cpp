@@ -12,8 +12,10 @@ void MemberLists::add(const TileLayer& layer, const perception::SummaryTile& sum
                       const std::function<bool(const ContentHash&)>& is_wanted) {
   if (layer.size() != summary.size()) refuseDamaged("stored objects are of other cluxels");
   std::vector<Collected*> of_share;
+  std::vector<std::uint64_t> part_of_share;
   for (const TileLayer::Share& share : layer.shares) {
     of_share.push_back(nullptr);
+    part_of_share.push_back(partKey(share.part_class));
     if (!is_wanted(share.object)) continue;
     const auto [place, is_new] = objects_.try_emplace(share.object);
     of_share.back() = &place->second;
@@ -22,6 +24,9 @@ void MemberLists::add(const TileLayer& layer, const perception::SummaryTile& sum
     if (const auto record = storedRecord(transaction_, share.object)) {
       place->second.members.class_iri = record->class_iri;
       place->second.is_class_wide = record->is_class_wide;
+      if (record->is_class_wide) continue;
+      place->second.members.rule_id = record->rule_id;
+      place->second.members.confidence = record->confidence;
     }
   }
   const Eigen::Vector3d corner = perception::cornerOf(layer.key);
@@ -31,6 +36,7 @@ void MemberLists::add(const TileLayer& layer, const perception::SummaryTile& sum
     if (share == kNoShare || of_share[share] == nullptr) continue;
     ObjectMembers& members = of_share[share]->members;
     members.seeds.push_back(memberKey(summary.scans[summary.seed_scan[c]], summary.seed_point[c]));
+    if (!of_share[share]->is_class_wide) members.addToPart(part_of_share[share], members.seeds.back());
     if (of_share[share]->is_class_wide || (!has_places && members.places.empty())) continue;
     members.places.resize(members.seeds.size(), kNoMemberPlace);
     if (!has_places) continue;

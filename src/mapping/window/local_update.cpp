@@ -252,9 +252,8 @@ class LocalUpdate {
     std::erase_if(made, [](const rules::SemanticObject& object) { return object.is_class_wide; });
     update.objects = before_.objects + made.size() - decision.replaced.size();
     if (strip_ == nullptr ? params_.lists_objects : strip_->keeps_lists) {
-      update.before = replacedObjects(window, decision);
-      update.after = membersOf(made, window.scene.cluxels);
-      keepDifferent(update.before, update.after);
+      DifferentObjects& different = update;
+      different = differenceOf(replacedObjects(window, decision), membersOf(made, window.scene.cluxels));
     }
     former_summaries_.drop();
     count(window, change, update);

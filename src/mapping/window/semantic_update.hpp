@@ -14,11 +14,11 @@
 
 namespace cluxel::mapping {
 
-struct SemanticUpdate {
+/// With the objects that differ.
+struct SemanticUpdate : DifferentObjects {
   bool is_local = false;                                   ///< computed around the change
   bool took_decisions = false;                             ///< of another map
   std::size_t tiles_decided = 0;                           ///< in which the rules ran: a window, or all
-  std::vector<ObjectMembers> before, after;                ///< the objects that differ, sorted by id
   std::uint64_t objects = 0, cluxels = 0, primitives = 0;  ///< of the map afterwards
   std::vector<StatementOutcome> statements;
 };
