@@ -131,13 +131,17 @@ TEST(LabelModel, RefusesFaultyTextNamingTheFile) {
                                         replaced(text, "\"slope\":", "\"slope\":3e37,\"was\":"),
                                         replaced(text, "\"bias\":[", "\"bias\":[3e37,3e37,3e37,3e37,3e37],\"was\":["),
                                         replaced(text, "\"degree_power\":", "\"degree_power\":-1e30,\"was\":"),
-                                        replaced(text, "\"unary_scale\":", "\"unary_scale\":3e37,\"was\":")};
+                                        replaced(text, "\"unary_scale\":", "\"unary_scale\":3e37,\"was\":"),
+                                        replaced(text, "\"calibration\":{", "\"calibration\":null,\"was\":{"),
+                                        replaced(text, "\"trees\":[", "\"trees\":[null,"),
+                                        replaced(text, "\"name\":", "\"name\":5,\"was\":")};
   for (const std::string& bad : faulty) {
     try {
       parseModel(bad, "bad.json");
       ADD_FAILURE() << "taken: " << bad.substr(0, 80);
     } catch (const InputError& error) {
       EXPECT_NE(std::string(error.what()).find("bad.json"), std::string::npos) << error.what();
+      EXPECT_EQ(std::string(error.what()).find("json.exception"), std::string::npos) << error.what();
     }
   }
 }

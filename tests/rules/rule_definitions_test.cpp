@@ -84,6 +84,17 @@ TEST(RuleDefinition, ThatNobodyUsesIsAWarning) {
   EXPECT_EQ(loaded.diagnostics[0].location.line, 6U);
 }
 
+TEST(RuleDefinition, ThatNobodyUsesIsLookedInto) {
+  const std::string tall = "  tall: [ height >= 2 m ]\n";
+  EXPECT_THAT(faultOf(loadDefined(tall + "  x1: { use: x2 }\n  x2: { use: x1 }\n", kUser)),
+              HasSubstr("the definitions use each other: x1 -> x2 -> x1"));
+  EXPECT_THAT(faultOf(loadDefined(tall + "  zz: [ { use: tal } ]\n", kUser)),
+              ::testing::AllOf(HasSubstr("d.yaml:6:"), HasSubstr("nothing is defined as 'tal'")));
+  const auto loaded = loadDefined(tall + "  yy: [ { use: zz } ]\n  zz: [ width <= 1 m ]\n", kUser);
+  ASSERT_TRUE(loaded.rules.has_value()) << faultOf(loaded);
+  EXPECT_EQ(loaded.diagnostics.size(), 2U) << "neither is used by a rule";
+}
+
 TEST(RuleDefinition, ThatMultipliesWithoutEndIsAFault) {
   std::string define = "  d0: [ height >= 2 m ]\n";
   for (int i = 1; i < 40; ++i) {

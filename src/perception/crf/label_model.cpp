@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/file_bytes.hpp"
+#include "base/json/json_fault.hpp"
 #include "cluxel/error.hpp"
 #include "perception/crf/model_settings.hpp"
 #include "perception/training/unary_training.hpp"
@@ -137,6 +138,9 @@ FeatureLayout layoutOf(const Json& json, const PerceptionParams& perception) {
 }
 
 LabelModel modelOf(const Json& json) {
+  for (const char* section : {"perception", "features", "unary", "pairs", "calibration", "provenance"})
+    if (!json.contains(section) || !json.at(section).is_object())
+      throw std::invalid_argument("'" + std::string(section) + "' is missing or no object {…}");
   LabelModel model;
   model.name = json.at("name").get<std::string>();
   require(json.at("labels") == Json(scan::kPrimitiveLabelNames), "the labels are not those of this program");
@@ -183,7 +187,7 @@ LabelModel parseModel(std::string_view text, const std::string& file) {
                        std::to_string(kModelVersion));
     return modelOf(json);
   } catch (const Json::exception& fault) {
-    refuse(file, std::string("faulty model: ") + fault.what());
+    refuse(file, "faulty model: " + plainFault(fault));
   } catch (const std::invalid_argument& fault) {
     refuse(file, std::string("faulty model: ") + fault.what());
   }

@@ -38,6 +38,22 @@ class DefinitionExpander {
     node.items = std::move(items);
   }
 
+  /// What a definition says counts also when no rule uses it: its uses of others may be misspelt, or go in a circle.
+  void expandUnused() {
+    std::vector<std::string> unused;
+    for (const auto& [name, definition] : definitions_)
+      if (!definition.is_used) unused.push_back(name);
+    const std::map<std::string, Definition> before = definitions_;
+    for (const std::string& name : unused) {
+      copied_ = 0;
+      open_ = {name};
+      YamlNode copy = *definitions_[name].value;
+      expand(copy);
+    }
+    open_.clear();
+    definitions_ = before;  // what only an unused definition uses is unused, too
+  }
+
   void warnOfUnused() {
     if (faults_.errorCount() > 0) return;  // errors hide uses
     for (const auto& [name, definition] : definitions_)
@@ -149,6 +165,7 @@ class DefinitionExpander {
 void expandDefinitions(GatheredRules& gathered, FaultList& faults) {
   DefinitionExpander expander(gathered, faults);
   for (YamlNode& rule : gathered.rules) expander.expand(rule);
+  expander.expandUnused();
   expander.warnOfUnused();
 }
 
