@@ -168,6 +168,38 @@ TEST_F(RuleTestFolder, ComparesWithGoldenObjects) {
   EXPECT_FALSE(run(binTest("{ golden: golden.json, min_precision: 0.5 }")).passed());
 }
 
+TEST_F(RuleTestFolder, CountsObjectsOfClassesThatTheGoldenFileLacks) {
+  const std::string test = binTest("{ golden: golden.json, min_precision: 0.9, min_recall: 0 }");
+  writeFile(folder_ / "golden.json", R"({"objects": [{"class": "clx:Tree", "min": [3, 3, 0], "max": [4, 4, 1]}]})");
+  const RuleTestReport report = run(test);
+  EXPECT_FALSE(report.passed());
+  EXPECT_NE(textOf(report).find("these are no golden objects: 1 clx:SmallObject"), std::string::npos) << textOf(report);
+  writeFile(folder_ / "golden.json", R"({"objects": []})");
+  EXPECT_FALSE(run(test).passed()) << "a file that was cut short";
+}
+
+TEST_F(RuleTestFolder, TellsWhatIsWrongWithAGoldenFile) {
+  const std::string test = binTest("{ golden: golden.json, min_recall: 1 }");
+  for (const auto& [text, fault] : std::initializer_list<std::pair<const char*, const char*>>{
+           {"{\"objects\": [\n", "golden.json:2:"},
+           {"null", "there is null where an object {…} is wanted"},
+           {"{}", "it has no 'objects'"},
+           {R"({"objects": 3})", "'objects' is not a list"},
+           {R"({"objects": [{"class": "clx:Tree", "min": [0, 0, 0]}]})", "object 1: it has no 'max'"},
+           {R"({"objects": [{"class": "clx:Tree", "min": [0, 0], "max": [1, 1, 1]}]})", "a list is too short"},
+           {R"({"objects": [{"class": 5, "min": [0, 0, 0], "max": [1, 1, 1]}]})",
+            "there is number where string is wanted"}}) {
+    writeFile(folder_ / "golden.json", text);
+    const std::string report = textOf(run(test));
+    EXPECT_NE(report.find(fault), std::string::npos) << report;
+    EXPECT_EQ(report.find("json.exception"), std::string::npos) << report;
+  }
+}
+
+TEST_F(RuleTestFolder, AFileThatCannotBeReadIsNoKnownFailure) {
+  EXPECT_FALSE(run(binTest("{ golden: absent.json, min_recall: 1 }", "    todo: true\n")).passed());
+}
+
 TEST_F(RuleTestFolder, WritesJsonAndJunit) {
   const RuleTestReport report = run(binTest("{ not: [ clx:SmallObject ] }"));
   const auto json = nlohmann::json::parse(jsonOf(report));

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
 #include "base/file_bytes.hpp"
+#include "base/json/json_fault.hpp"
 #include "rules/propose/condition_eval.hpp"
 #include "rules/testing/rule_test_file.hpp"
 
@@ -187,29 +189,55 @@ class Checking {
   }
 
   void checkGolden(const GoldenObjects& golden) {
-    nlohmann::json expected;
-    try {
-      expected = nlohmann::json::parse(readFile(golden.file)).at("objects");
-      for (const auto& object : expected) readBounds(object);
-    } catch (const nlohmann::json::exception& fault) {
-      throw InputError({golden.file.string(), 0, 0, std::nullopt},
-                       std::string("not a file of golden objects: ") + fault.what(),
-                       "{\"objects\": [{\"class\": \"clx:Tree\", \"min\": [x, y, z], \"max\": [x, y, z]}]}");
-    }
+    const nlohmann::json expected = goldenObjects(golden.file);
+    // A golden file holds all objects of the scene, so that each one that comes out beside them is false.
     std::vector<bool> used(result_.objects.size(), false);
-    std::set<std::string> classes;
-    std::size_t matched = 0, made = 0;
-    for (const auto& object : expected) {
-      classes.insert(object.at("class").get<std::string>());
-      matched += matchGolden(object, golden.iou, used) ? 1 : 0;
-    }
-    for (const SemanticObject& object : result_.objects) made += classes.count(rules_.shorten(object.class_iri));
-    const double precision = made == 0 ? 0 : static_cast<double>(matched) / static_cast<double>(made);
-    const double recall = expected.empty() ? 0 : static_cast<double>(matched) / static_cast<double>(expected.size());
+    std::size_t matched = 0;
+    for (const auto& object : expected) matched += matchGolden(object, golden.iou, used) ? 1 : 0;
+    const auto shareOf = [&](std::size_t all) {
+      return all == 0 ? 1.0 : static_cast<double>(matched) / static_cast<double>(all);
+    };
+    const double precision = shareOf(result_.objects.size()), recall = shareOf(expected.size());
     if (precision < golden.min_precision)
-      fail("precision " + std::to_string(precision) + " is below " + std::to_string(golden.min_precision));
+      fail("precision " + std::to_string(precision) + " is below " + std::to_string(golden.min_precision) +
+           "; these are no golden objects: " + countsOfUnused(used));
     if (recall < golden.min_recall)
       fail("recall " + std::to_string(recall) + " is below " + std::to_string(golden.min_recall));
+  }
+
+  static nlohmann::json goldenObjects(const std::filesystem::path& file) {
+    const std::string text = readFile(file);
+    const auto refuse = [&](SourceLocation at, const std::string& what) {
+      at.file = file.string();
+      throw InputError(at, "not a file of golden objects: " + what,
+                       "{\"objects\": [{\"class\": \"clx:Tree\", \"min\": [x, y, z], \"max\": [x, y, z]}]}");
+    };
+    nlohmann::json objects;
+    std::size_t number = 0;
+    try {
+      objects = nlohmann::json::parse(text).at("objects");
+      if (!objects.is_array()) refuse({}, "'objects' is not a list");
+      for (const auto& object : objects) {
+        ++number;
+        (void)object.at("class").get<std::string>();
+        readBounds(object);
+      }
+    } catch (const nlohmann::json::parse_error& fault) {
+      refuse(locate(file.string(), text, fault.byte == 0 ? 0 : fault.byte - 1), "it is no JSON");
+    } catch (const nlohmann::json::exception& fault) {
+      refuse({}, (number > 0 ? "object " + std::to_string(number) + ": " : "") + plainFault(fault));
+    }
+    return objects;
+  }
+
+  /// "931 clx:Bench, 2 clx:Tree".
+  std::string countsOfUnused(const std::vector<bool>& used) const {
+    std::map<std::string, std::size_t> counts;
+    for (std::size_t i = 0; i < used.size(); ++i)
+      if (!used[i]) ++counts[rules_.shorten(result_.objects[i].class_iri)];
+    std::string text;
+    for (const auto& [name, count] : counts) text += (text.empty() ? "" : ", ") + std::to_string(count) + " " + name;
+    return text;
   }
 
   static Bounds readBounds(const nlohmann::json& object) {

@@ -82,7 +82,10 @@ class TestRun {
     try {
       result.failures = failuresOf(test);
     } catch (const Error& fault) {
+      // What cannot be read was never tested, so that it is no known failure.
       result.failures = {fault.what()};
+      result.outcome = RuleTestOutcome::Failed;
+      return result;
     }
     if (result.failures.empty())
       result.outcome = test.todo ? RuleTestOutcome::UnexpectedPass : RuleTestOutcome::Passed;
