@@ -203,7 +203,7 @@ TEST(TruthFiles, ReadPlainAndGzipAlike) {
 
 TEST(TruthFiles, AreRefusedWithFileAndLine) {
   EXPECT_THAT(refusalOf([] { parseTruth("1 2 3\n5 2 3\n", "a", 2); }),
-              HasSubstr("a:2:2: error: primitive must be a whole number from -1 to 4"));
+              HasSubstr("a:2:1: error: primitive must be a whole number from -1 to 4"));
   EXPECT_THAT(refusalOf([] { parseTruth("1 9 3\n", "a", 1); }),
               HasSubstr("object must be a whole number from -1 to 8"));
   EXPECT_THAT(refusalOf([] { parseTruth("1 2 -2\n", "a", 1); }), HasSubstr("instance must be"));
@@ -229,6 +229,17 @@ TEST(TruthFiles, AreFoundByTheStemOfTheScan) {
   const auto packed = folder.write("chunk_ac.truth.gz", "");
   EXPECT_EQ(truthFileOf(folder.path(), "/elsewhere/chunk_ac.xyz_label_conf"), packed);
   EXPECT_EQ(truthFileOf(folder.path(), "chunk_ad.pcd"), std::nullopt);
+}
+
+TEST(TruthFiles, ThatAreThereTwiceAreRefused) {
+  const ScratchFolder folder;
+  folder.write("chunk_ac.truth.gz", "");
+  const auto plain = folder.write("chunk_ac.truth", "");
+  EXPECT_THAT(refusalOf([&] { (void)truthFileOf(folder.path(), "chunk_ac.pcd"); }),
+              ::testing::AllOf(HasSubstr("chunk_ac.truth.gz: error: the same truth is there unpacked"),
+                               HasSubstr("keep one of the two files")));
+  std::filesystem::remove(folder.path() / "chunk_ac.truth.gz");
+  EXPECT_EQ(truthFileOf(folder.path(), "chunk_ac.pcd"), plain);
 }
 
 TEST(TruthFiles, OfScansOfOneNameLieBelowTheNamesOfTheirFolders) {

@@ -135,8 +135,16 @@ std::string TextScanner::wordAt() const {
 }
 
 void TextScanner::refuse(const std::string& message, const std::string& hint) const {
+  refuseAt(at_, message, hint);
+}
+
+void TextScanner::refuseWord(std::string_view word, const std::string& message) const {
+  refuseAt(word.data(), message, {});
+}
+
+void TextScanner::refuseAt(const char* at, const std::string& message, const std::string& hint) const {
   Diagnostic diagnostic;
-  diagnostic.location = {.file = file_, .line = line_, .column = static_cast<std::size_t>(at_ - start_) + 1};
+  diagnostic.location = {.file = file_, .line = line_, .column = static_cast<std::size_t>(at - start_) + 1};
   diagnostic.message = message;
   diagnostic.hint = hint;
   if (currentLine().size() <= kMaxShownLine) diagnostic.source_line = currentLine();

@@ -46,6 +46,8 @@ class TextScanner {
   const std::string& file() const { return file_; }
   /// Refuses the line at the current position.
   [[noreturn]] void refuse(const std::string& message, const std::string& hint = {}) const;
+  /// Refuses a word of the line, at its first letter.
+  [[noreturn]] void refuseWord(std::string_view word, const std::string& message) const;
   /// Refuses the file at its end.
   [[noreturn]] void refuseEnd(const std::string& message, const std::string& hint = {}) const;
 
@@ -56,6 +58,7 @@ class TextScanner {
   void endNumber(const char* end, const char* what);
   void checkCommas();
   std::string wordAt() const;
+  [[noreturn]] void refuseAt(const char* at, const std::string& message, const std::string& hint) const;
 
   const char* next_;             ///< start of the next line
   const char* end_;              ///< end of the text

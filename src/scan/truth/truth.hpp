@@ -86,6 +86,7 @@ PointTruth truthFromFile(const std::filesystem::path& file, std::size_t point_co
 
 /// The truth file of a scan file in a truth folder: below a folder of the name of the scan's own folder (for scans of
 /// one name in several folders), else in the folder itself; absent when there is none.
+/// Throws InputError where it lies there both packed and unpacked.
 std::optional<std::filesystem::path> truthFileOf(const std::filesystem::path& folder,
                                                  const std::filesystem::path& scan);
 

@@ -27,8 +27,8 @@ std::int32_t codeOf(TextScanner& scanner, const char* what, std::int32_t max_cod
   std::int32_t value = 0;
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
   if (error != std::errc() || end != word.data() + word.size() || value < -1 || value > max_code)
-    scanner.refuse(std::string(what) + " must be a whole number from -1 to " + std::to_string(max_code) + ": '" +
-                   std::string(word.substr(0, 40)) + "'");
+    scanner.refuseWord(word, std::string(what) + " must be a whole number from -1 to " + std::to_string(max_code) +
+                                 ": '" + std::string(word.substr(0, 40)) + "'");
   return value;
 }
 
@@ -75,12 +75,16 @@ PointTruth truthFromFile(const fs::path& file, std::size_t point_count) {
 }
 
 std::optional<fs::path> truthFileOf(const fs::path& folder, const fs::path& scan) {
-  for (const fs::path& place : {folder / scan.parent_path().filename(), folder})
-    for (const char* end : {".truth", ".truth.gz"}) {
-      fs::path candidate = place / (scan.stem().string() + end);
-      std::error_code unreadable;
-      if (fs::is_regular_file(candidate, unreadable)) return candidate;
-    }
+  for (const fs::path& place : {folder / scan.parent_path().filename(), folder}) {
+    const fs::path plain = place / (scan.stem().string() + ".truth"), packed = fs::path(plain).concat(".gz");
+    std::error_code unreadable;
+    const bool has_plain = fs::is_regular_file(plain, unreadable), has_packed = fs::is_regular_file(packed, unreadable);
+    // One of them may be of an earlier labelling.
+    if (has_plain && has_packed)
+      throw InputError({.file = packed.string()}, "the same truth is there unpacked, as " + plain.filename().string(),
+                       "keep one of the two files");
+    if (has_plain || has_packed) return has_plain ? plain : packed;
+  }
   return std::nullopt;
 }
 
