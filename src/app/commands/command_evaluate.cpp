@@ -64,6 +64,8 @@ tasks::MapEvaluation evaluateAll(const EvaluateOptions& options, Session& sessio
   for (const fs::path& file : options.maps) {
     const mapping::MapReader map(file);
     noteUnfinished(file, map.isFinished(), options.allow_unfinished, session);
+    for (const std::string& doubt : truth.doubtfulClasses(classCatalogueOf(map.inputs().ontology)))
+      session.console.note(doubt);
     tasks::MapEvaluation one = evaluateMap(map, truth);
     if (sum)
       sum->add(one);

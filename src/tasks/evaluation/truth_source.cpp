@@ -4,6 +4,7 @@
 
 #include "cluxel/error.hpp"
 #include "scan/input_paths.hpp"
+#include "tasks/evaluation/label_map_check.hpp"
 
 namespace cluxel::tasks {
 
@@ -21,6 +22,7 @@ TruthSource TruthSource::open(const fs::path& given, const DataHome& home) {
   const fs::path path = locateTruth(given, home);
   if (!fs::is_directory(path)) {
     source.labels_ = scan::LabelMap::load(path);
+    source.file_ = path;
     return source;
   }
   scan::requireInput(path);
@@ -42,6 +44,11 @@ TruthClasses TruthSource::classes() const {
     if (meaning.near) classes.meant.insert(meaning.near->object_class);
   }
   return classes;
+}
+
+std::vector<std::string> TruthSource::doubtfulClasses(const rules::ClassCatalogue& catalogue) const {
+  if (file_.empty()) return {};
+  return LabelMapCheck(labels_, catalogue, file_.string()).run();
 }
 
 std::string TruthSource::nameOfLabel(std::uint32_t label) const {

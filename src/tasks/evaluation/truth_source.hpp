@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/installation/data_home.hpp"
+#include "rules/language/class_catalogue.hpp"
 #include "scan/scan.hpp"
 #include "scan/truth/truth.hpp"
 #include "tasks/evaluation/truth_class.hpp"
@@ -38,11 +39,16 @@ class TruthSource {
   bool countsInstancesByScan() const { return folder_.empty(); }
   /// What the data set itself calls a label ("trunk"); empty with truth files, and for a label without meaning.
   std::string nameOfLabel(std::uint32_t label) const;
+  /// What a label map says of classes that can match no answer, because `catalogue` does not know them or knows them as
+  /// something else: one sentence each. A truth may have classes of its own. Throws InputError for a class in
+  /// `counts_as` that is unknown, and near to a known one.
+  std::vector<std::string> doubtfulClasses(const rules::ClassCatalogue& catalogue) const;
   /// Instances that count neither way, sorted.
   const std::vector<std::int32_t>& ambiguous() const { return ambiguous_; }
 
  private:
   std::filesystem::path folder_;  ///< empty with a label map
+  std::filesystem::path file_;    ///< of the label map
   scan::LabelMap labels_;         ///< of a folder: that of the numbers in truth files
   std::vector<std::int32_t> ambiguous_;
 };

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+// Label maps whose classes match no answer of a map.
+#include "tasks/evaluation/label_map_check.hpp"
+
+#include <gtest/gtest.h>
+
+#include "cluxel/error.hpp"
+#include "mapping/map_inputs.hpp"
+#include "rdf/vocabulary.hpp"
+#include "scan/truth/truth_parsers.hpp"
+#include "test_paths.hpp"
+
+namespace cluxel::tasks {
+
+using namespace scan;
+using namespace rdf;
+using namespace rules;
+using namespace mapping;
+namespace {
+
+/// The classes of the doubtful label map below, as the shipped ontology has them.
+ClassCatalogue smallCatalogue() {
+  using vocabulary::clx;
+  return {{{clx("Object"), {}, {}},
+           {clx("Tree"), {clx("Object")}, {clx("TreeTrunk"), clx("TreeTop")}},
+           {clx("SmallObject"), {clx("Object")}, {}},
+           {clx("Person"), {clx("Object")}, {}},
+           {clx("TreeTrunk"), {clx("Part")}, {}},
+           {clx("TreeTop"), {clx("Part")}, {}},
+           {clx("Avenue"), {clx("Place")}, {}}}};
+}
+
+std::vector<std::string> doubtsAbout(const std::string& text) {
+  const LabelMap labels(parseLabelMap(text, "my.yaml"));
+  const ClassCatalogue catalogue = smallCatalogue();
+  return LabelMapCheck(labels, catalogue, "my.yaml").run();
+}
+
+TEST(LabelMapCheck, TellsOfClassesThatMatchNoAnswer) {
+  const auto about = [](const std::string& label) {
+    return doubtsAbout("labels: { 1: { name: x, " + label + " } }\n");
+  };
+  EXPECT_TRUE(about("object: Tree, part: TreeTrunk").empty());
+  for (const auto& [label, doubt] : std::vector<std::pair<std::string, std::string>>{
+           {"object: Treee",
+            "my.yaml: the ontology of the map has no class 'Treee', so no answer is of it; did you "
+            "mean 'Tree'?"},
+           {"object: TreeTop", "'object: TreeTop' is no class of objects"},
+           {"object: Avenue", "'object: Avenue' is no class of objects"},
+           {"object: Tree, part: TreeTrank",
+            "'part: TreeTrank' is no part of Tree in the ontology of the map; did you "
+            "mean 'TreeTrunk'?"}}) {
+    const std::vector<std::string> doubts = about(label);
+    ASSERT_EQ(doubts.size(), 1U) << label;
+    EXPECT_NE(doubts.front().find(doubt), std::string::npos) << doubts.front();
+  }
+}
+
+TEST(LabelMapCheck, TakesClassesOfTheTruthThatAnswersCountAs) {
+  EXPECT_TRUE(
+      doubtsAbout("counts_as: { Tree: StaticOrPlant }\nlabels: { 1: { name: x, object: StaticOrPlant } }\n").empty());
+  const auto doubts = doubtsAbout("labels: { 1: { name: x, object: StaticOrPlant } }\n");
+  EXPECT_EQ(doubts.size(), 1U);
+}
+
+TEST(LabelMapCheck, RefusesSlipsInWhatAnswersCountAs) {
+  try {
+    doubtsAbout("counts_as: { Persn: SmallObject }\nlabels: { 1: { name: x, object: SmallObject } }\n");
+    FAIL() << "answers of Person would not count as small objects";
+  } catch (const InputError& fault) {
+    const std::string text = fault.what();
+    EXPECT_NE(text.find("my.yaml"), std::string::npos) << text;
+    EXPECT_NE(text.find("no class 'Persn'"), std::string::npos) << text;
+  }
+  const auto doubts =
+      doubtsAbout("counts_as: { Escalator: SmallObject }\nlabels: { 1: { name: x, object: SmallObject } }\n");
+  ASSERT_EQ(doubts.size(), 1U) << "a class of another ontology";
+  EXPECT_NE(doubts.front().find("no class 'Escalator'"), std::string::npos);
+}
+
+TEST(LabelMapCheck, FindsNothingInTheShippedLabelMaps) {
+  const DataHome home(test::sourceFolder());
+  const ClassCatalogue catalogue = classCatalogueOf(readMapInputs({}, home).ontology);
+  std::size_t maps = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(test::sourceFolder() / "labels")) {
+    if (entry.path().extension() != ".yaml") continue;
+    const LabelMap labels = LabelMap::load(entry.path());
+    const auto doubts = LabelMapCheck(labels, catalogue, entry.path().string()).run();
+    EXPECT_TRUE(doubts.empty()) << doubts.front();
+    ++maps;
+  }
+  EXPECT_GE(maps, 5U);
+}
+
+}  // namespace
+}  // namespace cluxel::tasks
