@@ -44,7 +44,9 @@ VisitVotes votesOf(std::size_t places, const ScanNumbers& hits, const ScanNumber
 
 TEST(VoteOfPlaces, TellsOnWhichVisitsAThingWasThere) {
   EXPECT_THAT(visitsWithIt(votesOf(20, scans({0, 2}), scans({3}))), ElementsAre(0, 1));
-  EXPECT_THAT(visitsWithIt(votesOf(2, scans({}), scans({3}))), IsEmpty());
+  EXPECT_THAT(visitsWithoutIt(votesOf(20, scans({0, 2}), scans({3}))), ElementsAre(2));
+  EXPECT_THAT(visitsWithIt(votesOf(20, scans({}), scans({3}))), IsEmpty());
+  EXPECT_THAT(visitsWithoutIt(votesOf(20, scans({}), scans({3}))), IsEmpty()) << "it was never there";
 }
 
 TEST(VoteOfPlaces, AnotherScanOfTheVisitThatPassesDoesNotTellThatItLeft) {

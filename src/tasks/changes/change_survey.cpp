@@ -107,6 +107,7 @@ class Survey {
                 [](const WholeObject& a, const WholeObject& b) { return a.object < b.object; });
     KeptCluxels::Clusters clusters = kept_cluxels_.take();
     survey_.cluxels = std::move(clusters.cluxels), survey_.clusters = std::move(clusters.groups);
+    survey_.cluxels.visits = survey_.visits;
     for (const std::size_t time : {kBefore, kAfter}) {
       KeptCells::Parts parts = kept_cells_[time].take();
       survey_.cells[time] = std::move(parts.cells), survey_.parts[time] = std::move(parts.groups);

@@ -87,7 +87,23 @@ class Clustering {
       findingsAt(cluxel, true)->seen_through.forEach([&](std::uint32_t scan) { ++seen_through[scan]; });
     for (const auto& [scan, cluxels] : seen_through)
       if (cluxels >= kMinCluxels && !hits.contains(scan)) without.insert(scan);
+    addScansOfVisitsWithoutIt(cluster, around, without);
     return without;
+  }
+
+  void addScansOfVisitsWithoutIt(const ChangeGroup& cluster, const ChangeGroup& around, ScanNumbers& without) const {
+    VoteOfPlaces votes(all_.visits, cluster.size());
+    for (const std::uint32_t cluxel : cluster) {
+      const RayFindings& there = *findingsAt(cluxel, true);
+      votes.addPlace(there.hits, there.allPassed());
+    }
+    const std::vector<std::uint32_t> visits = visitsWithoutIt(votes.take());
+    if (visits.empty()) return;
+    for (const std::uint32_t cluxel : around)
+      if (const RayFindings* there = findingsAt(cluxel, true))
+        there->allPassed().forEach([&](std::uint32_t scan) {
+          if (std::binary_search(visits.begin(), visits.end(), all_.visits.ofScan(scan))) without.insert(scan);
+        });
   }
 
   /// The chance that few rays hit the thing while it was there.
@@ -176,9 +192,7 @@ class Clustering {
     std::map<std::uint32_t, double> of_scan;
     for (const std::uint32_t cluxel : cluster) {
       const RayFindings& gone = *findingsAt(cluxel, false);
-      ScanNumbers scans = gone.passed;
-      scans |= gone.seen_through;
-      scans.forEach([&](std::uint32_t scan) { of_scan[scan] += std::min(each, 0.0); });
+      gone.allPassed().forEach([&](std::uint32_t scan) { of_scan[scan] += std::min(each, 0.0); });
     }
     double log_odds = 0;
     for (const auto& [scan, sum] : of_scan) log_odds += std::max(sum, -kMostOfScan);

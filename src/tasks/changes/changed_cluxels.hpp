@@ -10,6 +10,7 @@
 #include "perception/visibility/scan_rays.hpp"
 #include "tasks/changes/change_groups.hpp"
 #include "tasks/changes/scan_numbers.hpp"
+#include "tasks/changes/visit_votes.hpp"
 
 namespace cluxel::tasks {
 
@@ -26,6 +27,12 @@ struct RayFindings {
   bool isHit() const { return !hits.empty(); }
   /// Rays passed the place, and none ended there.
   bool isEmpty() const { return hits.empty() && !(seen_through.empty() && passed.empty()); }
+
+  ScanNumbers allPassed() const {
+    ScanNumbers scans = seen_through;
+    scans |= passed;
+    return scans;
+  }
 
   /// Adds what the rays of one scan found.
   void add(const perception::PlaceVerdict& found, std::uint32_t scan);
@@ -49,6 +56,7 @@ struct ChangedCluxels {
   std::vector<perception::Place> places;  ///< on the thing that it belongs to; of those that rays are compared with
   std::vector<CluxelChange> changes;
   std::vector<RayFindings> before, after;
+  Visits visits{};  ///< of the scans
 };
 
 /// Of the rays near the places of what is gone, so many may end before them for each that passes.
@@ -56,7 +64,8 @@ inline constexpr double kMostStopped = 0.75;
 
 /// Connected clusters of five or more cluxels that changed alike, each ascending, in the order of their first cluxel. A
 /// cluster is dropped when the rays may have missed a thing that is still there. Of the scans while it was there, those
-/// do not count that hit nothing in and around it and saw through five of its cluxels: it was away for a while.
+/// do not count that hit nothing in and around it and saw through five of its cluxels, nor those of visits that saw it away
+/// (visitsWithoutIt): it was away for a while.
 /// - Each scan that passed a cluxel adds log((1 - p) / 0.95), where p is the share of hits in and around the cluster
 ///   while the thing was there: on average of its cluxels the sum must be -3.5 or less, so that a crown needs more
 ///   scans than a car.

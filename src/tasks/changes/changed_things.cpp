@@ -103,9 +103,7 @@ class Things {
     return votesOf(cluster.size(), [&](std::size_t time, std::size_t place, VoteOfPlaces& votes) {
       const ChangedCluxels& all = survey_.cluxels;
       const RayFindings& found = (time == kBefore ? all.before : all.after)[cluster[place]];
-      ScanNumbers passed = found.seen_through;
-      passed |= found.passed;
-      votes.addPlace(found.hits, passed);
+      votes.addPlace(found.hits, found.allPassed());
     });
   }
 

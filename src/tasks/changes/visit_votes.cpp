@@ -10,6 +10,17 @@ namespace {
 
 constexpr perception::PresenceParams kPresence;
 
+/// The visits of which the log-odds of "there" are as is asked.
+template <typename Accepts>
+std::vector<std::uint32_t> visitsWhere(const VisitVotes& votes, const Accepts& accepts) {
+  const double share_of_hits = perception::shareOfHits(votes);
+  std::vector<std::uint32_t> visits;
+  for (std::size_t i = 0; i < votes.size(); ++i)
+    if (accepts(logOddsOfPresence(std::span(votes).subspan(i, 1), share_of_hits, kPresence)))
+      visits.push_back(static_cast<std::uint32_t>(votes[i].time_s));
+  return visits;
+}
+
 }  // namespace
 
 Visits::Visits(std::span<const double> times_s, double since_s) : since_s_(since_s) {
@@ -52,12 +63,12 @@ VisitVotes votesByVisit(std::span<const perception::ScanVotes> votes, const Visi
 }
 
 std::vector<std::uint32_t> visitsWithIt(const VisitVotes& votes) {
-  const double share_of_hits = perception::shareOfHits(votes);
-  std::vector<std::uint32_t> visits;
-  for (std::size_t i = 0; i < votes.size(); ++i)
-    if (logOddsOfPresence(std::span(votes).subspan(i, 1), share_of_hits, kPresence) >= kPresence.decided)
-      visits.push_back(static_cast<std::uint32_t>(votes[i].time_s));
-  return visits;
+  return visitsWhere(votes, [](double log_odds) { return log_odds >= kPresence.decided; });
+}
+
+std::vector<std::uint32_t> visitsWithoutIt(const VisitVotes& votes) {
+  if (visitsWithIt(votes).empty()) return {};
+  return visitsWhere(votes, [](double log_odds) { return log_odds <= -kPresence.decided; });
 }
 
 bool isAwayAtEnd(const VisitVotes& votes) {

@@ -21,7 +21,8 @@ class Visits {
   Visits() = default;
   /// `times_s`: of the scans, ascending. `since_s`: scans from then on are of later visits.
   Visits(std::span<const double> times_s, double since_s);
-  std::uint32_t ofScan(std::uint32_t scan) const { return of_scan_[scan]; }
+  /// 0 where no times were given.
+  std::uint32_t ofScan(std::uint32_t scan) const { return of_scan_.empty() ? 0 : of_scan_[scan]; }
   std::uint32_t at(double time_s) const;  ///< of a scan with this time
   bool isAfter(std::uint32_t visit) const { return begins_s_[visit] >= since_s_; }
 
@@ -53,6 +54,9 @@ VisitVotes votesByVisit(std::span<const perception::ScanVotes> votes, const Visi
 
 /// The visits on which the thing was surely there, ascending.
 std::vector<std::uint32_t> visitsWithIt(const VisitVotes& votes);
+
+/// The visits that surely saw it away, where it was surely there on another, ascending.
+std::vector<std::uint32_t> visitsWithoutIt(const VisitVotes& votes);
 
 /// Whether the last of the visits show that the thing had left after it was there.
 bool isAwayAtEnd(const VisitVotes& votes);
