@@ -39,20 +39,40 @@ TEST(CostBars, ADenseCampusTakesFortyBytesAPointAndCompactGainsNothing) {
   EXPECT_GE(static_cast<double>(fs::file_size(map)), 0.95 * before);
 }
 
-TEST(CostBars, AChangeLeavesAQuarterOfTheFileFreeAtMostAndNearlyNothingOfTheDisk) {
+TEST(CostBars, AChangeLeavesAQuarterOfTheFileFreeAtMost) {
   const SmallCampus campus({.seed = 1, .stops = 4, .size_m = 60, .points_per_stop = 20'000});
   const ScratchFolder folder;
-  const fs::path map = folder.path() / "map.clx", copy = folder.path() / "copy.clx";
+  const fs::path map = folder.path() / "map.clx";
   buildMap(scansOf({campus.files()[0], campus.files()[1]}), shippedInputs(), map, {}, silence());
   for (const std::size_t stop : {2U, 3U}) {
     extendMap(map, scansOf({campus.files()[stop]}), {}, silence());
     EXPECT_LE(freeShare(map), kMaxFreeShareOfChanged);
-    if (!hasHoles(folder.path())) continue;
-    fs::remove(copy);
-    copyCompacted(map, copy);
-    const auto slack = static_cast<double>(std::uint64_t{1} << 20U);  // less is not worth a change of the file
-    EXPECT_GE(static_cast<double>(diskBytes(copy)) + slack, 0.95 * static_cast<double>(diskBytes(map)));
   }
+}
+
+/// Three more campuses beside it make the change a small one, so that the map is not rewritten.
+TEST(CostBars, CompactGainsLessThanATwentiethOfTheDiskAfterAnExtension) {
+  const ScratchFolder folder;
+  if (!hasHoles(folder.path())) GTEST_SKIP() << "the file system has no holes";
+  std::deque<SmallCampus> campuses;
+  for (const unsigned seed : {8U, 9U, 10U, 11U})
+    campuses.emplace_back(CampusParams{.seed = seed, .stops = 4, .size_m = 60, .points_per_stop = 20'000});
+  std::vector<fs::path> files;
+  for (const SmallCampus& campus : campuses) files.insert(files.end(), campus.files().begin(), campus.files().end());
+  const ScanSet all = scansOf(files);
+  std::vector<PosedScan> scans;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    scans.push_back({i, all.file(i).T_map_sensor});
+    scans.back().T_map_sensor.pretranslate(Eigen::Vector3d(256 * static_cast<double>(i / 4), 0, 0));
+  }
+  const ScanSet added = all.posed({scans[3]});
+  scans.erase(scans.begin() + 3);
+  const fs::path map = folder.path() / "map.clx", copy = folder.path() / "copy.clx";
+  buildMap(all.posed(scans), shippedInputs(), map, {}, silence());
+  extendMap(map, added, {}, silence());
+  EXPECT_LT(diskBytes(map) + 1'000'000, fs::file_size(map)) << "the map has no holes";
+  copyCompacted(map, copy);
+  EXPECT_GE(static_cast<double>(diskBytes(copy)), 0.95 * static_cast<double>(diskBytes(map)));
 }
 
 TEST(CostBarsOfOakland, AMapTakesNinetyBytesAPoint) {

@@ -109,6 +109,17 @@ TEST_F(FreePages, ThatAnotherProcessReadsStay) {
   EXPECT_GT(releaseFreePages(*open()), 1'900'000U) << "nobody reads the old commit any more";
 }
 
+TEST_F(FreePages, OfAFileWithAnotherNameStay) {
+  const auto environment = create();
+  put(*environment, "long", std::string(2'000'000, 'a'));
+  put(*environment, "long", "b");
+  const std::filesystem::path link = folder_.path() / "link.clx";
+  std::filesystem::create_hard_link(file_, link);
+  EXPECT_EQ(releaseFreePages(*environment), 0U);
+  std::filesystem::remove(link);
+  EXPECT_GT(releaseFreePages(*environment), 1'900'000U);
+}
+
 TEST_F(FreePages, AreReleasedOnlyByAWriter) {
   put(*create(), "a", "b");
   const auto environment = open(OpenMode::ReadOnly);

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // What maps and changes say of boxes that leave, return, and are seen from the edge.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <optional>
 
+#include "cluxel/error.hpp"
 #include "sparql/query_engine.hpp"
 #include "tasks/box_visits.hpp"
 #include "tasks/changes/site_changes.hpp"
@@ -130,6 +132,24 @@ TEST(ReturningThings, AVisitTellsWhatItChangedOnce) {
   EXPECT_TRUE(kindsAt(visits[0], kOther.center()).empty());
   EXPECT_TRUE(kindsAt(visits[1], kCar.center()).empty());
   EXPECT_TRUE(visits[2].changes.empty());
+}
+
+TEST(ReturningThings, ATimeUntilWhichThereIsTooLittleIsToldAsTheCause) {
+  const BoxMap site({visit({kCar}), visit({})});
+  const auto message = [&](const ChangeTimes& times) {
+    try {
+      changesIn(site.map(), times, 1);
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  const double first_s = 1.7e9, noon_s = first_s + kDay_s / 2;
+  using testing::HasSubstr;
+  EXPECT_THAT(message({.until_s = noon_s}), HasSubstr("until 2023-11-15T10:13:20.000000Z the map has scans without"));
+  EXPECT_THAT(message({.until_s = 1e9}), HasSubstr("the map has no scan with a time and a pose"));
+  EXPECT_THAT(message({.since_s = noon_s, .until_s = first_s}), HasSubstr("which is earlier"));
+  EXPECT_THAT(message({.since_s = noon_s, .until_s = noon_s + 60}), HasSubstr("and until 2023-11-15T10:14:20.000000Z"));
 }
 
 TEST(ReturningThings, OneRayThatPassesOnTheSameVisitDoesNotHideThatAThingLeft) {

@@ -58,8 +58,8 @@ TEST(VoteOfPlaces, AnotherScanOfTheVisitThatPassesDoesNotTellThatItLeft) {
 TEST(VoteOfPlaces, TakesAnyNumberOfPlaces) {
   for (const std::size_t places : {1U, 255U, 256U, 257U, 5000U}) {
     const VisitVotes votes = votesOf(places, scans({0}), scans({2}));
-    ASSERT_EQ(votes.size(), 2U);
-    EXPECT_EQ(votes[0].hits.count(), std::min<std::size_t>(places, perception::kMaxPlaces));
+    ASSERT_THAT(votes.visits, ElementsAre(0, 1));
+    EXPECT_EQ(votes.votes[0].hits.count(), std::min<std::size_t>(places, perception::kMaxPlaces));
   }
 }
 
@@ -78,6 +78,9 @@ TEST(ObjectStates, OneLaterScanTellsThatAllOfAThingIsGone) {
   EXPECT_TRUE(isAllGone(0, 95));
   EXPECT_FALSE(isAllGone(0, 60)) << "a scan sees through many places of a crown";
   EXPECT_FALSE(isAllGone(3, 95)) << "some of it is left";
+  std::vector<perception::ScanVotes> elsewhere{vote(0, 10, 0), vote(4000, 0, 0)};
+  for (std::size_t place = 10; place < 100; ++place) elsewhere[1].seen_through.set(place);
+  EXPECT_FALSE(statesOf(0, elsewhere, 4000).is_all_gone) << "where it was never hit, it may not have been";
 }
 
 }  // namespace

@@ -34,7 +34,7 @@ void printStates(const mapping::MapReader& map, const tasks::SiteChanges& found)
 void printChanges(const mapping::MapReader& map, const tasks::SiteChanges& found) {
   std::size_t unseen = 0, there = 0;
   for (const tasks::ObjectStates& states : found.states) {
-    unseen += states.after == perception::PresenceState::NotObserved ? 1 : 0;
+    unseen += wasNotObservedAgain(states) ? 1 : 0;
     there += states.after == perception::PresenceState::Present ? 1 : 0;
   }
   std::printf("%s: %zu changes; %zu objects are there, %zu were not observed again\n", periodText(found).c_str(),

@@ -109,24 +109,26 @@ void compactIfSparse(const fs::path& map, ProgressSink& sink, double max_free_sh
   if (const auto space = knownSpaceOf(map, sink)) compactIfSparse(map, *space, sink, max_free_share);
 }
 
-bool compactIfSparse(const fs::path& map, const rdf::FreeSpace& space, ProgressSink& sink, double max_free_share) {
+Compaction compactIfSparse(const fs::path& map, const rdf::FreeSpace& space, ProgressSink& sink,
+                           double max_free_share) {
   try {
-    if (!fs::exists(copyOf(map)) && !isMuch(space.bytes, space.file_bytes, max_free_share)) return false;
+    if (!fs::exists(copyOf(map)) && !isMuch(space.bytes, space.file_bytes, max_free_share))
+      return Compaction::NotNeeded;
     if (statusOf(map).st_nlink > 1)
       throw Error(ErrorKind::StoreUnavailable, "it has another name (a hard link), which would keep the old file");
     if (fs::space(fs::absolute(withoutLinks(map)).parent_path()).available < fs::file_size(map))
       throw Error(ErrorKind::StoreUnavailable, "there is no room beside it for a copy");
     const bool pages_are_full = !isMuch(space.bytes - space.in_free_pages, space.file_bytes, max_free_share);
     compactMap(map, pages_are_full ? rdf::CopiedPages::AsTheyAre : rdf::CopiedPages::Filled);
-    return true;
+    return Compaction::Done;
   } catch (const std::exception& error) {
     noteFailure(map, error, sink);
-    return false;
+    return Compaction::Failed;
   }
 }
 
 void freeSpaceOfChange(const fs::path& map, const rdf::FreeSpace& space, ProgressSink& sink) {
-  if (compactIfSparse(map, space, sink, kMaxFreeShareOfChanged)) return;
+  if (compactIfSparse(map, space, sink, kMaxFreeShareOfChanged) != Compaction::NotNeeded) return;
   try {
     if (isMuch(space.freeOnDisk(), space.disk_bytes, kMaxFreeShare))
       rdf::releaseFreePages(*rdf::Environment::open(map, rdf::OpenMode::ReadWrite));

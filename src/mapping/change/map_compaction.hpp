@@ -2,6 +2,7 @@
 // The free space of a map: given back after a change that left much of it, and on request.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 
 #include "cluxel/progress.hpp"
@@ -29,9 +30,10 @@ inline constexpr double kMaxFreeShareOfChanged = 0.25;
 /// changes that left the space. Pages of indexes are filled when that alone would free as much. Where it fails, the map
 /// stays larger, and a note tells why.
 void compactIfSparse(const std::filesystem::path& map, ProgressSink& sink, double max_free_share = kMaxFreeShare);
-/// The same when what it would free is known. True when the map was compacted.
-bool compactIfSparse(const std::filesystem::path& map, const rdf::FreeSpace& space, ProgressSink& sink,
-                     double max_free_share);
+enum class Compaction : std::uint8_t { NotNeeded, Done, Failed };
+/// The same when what it would free is known.
+Compaction compactIfSparse(const std::filesystem::path& map, const rdf::FreeSpace& space, ProgressSink& sink,
+                           double max_free_share);
 
 /// After a change: compacts the map when more than kMaxFreeShareOfChanged would be freed. Else, when its free pages
 /// take more than kMaxFreeShare of what it takes on the disk, they become holes in the file, where the file system can.

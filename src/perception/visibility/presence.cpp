@@ -72,7 +72,7 @@ double shareOfHits(std::span<const ScanVotes> votes) {
 Visibility visibilityOf(std::span<const ScanVotes> votes) {
   PlaceSet hit;
   for (const ScanVotes& vote : votes) hit |= vote.hits;
-  return {shareOfHits(votes), hit.count()};
+  return {shareOfHits(votes), hit};
 }
 
 double logOddsOfPresence(std::span<const ScanVotes> votes, double share_of_hits, const PresenceParams& params) {
@@ -87,7 +87,7 @@ bool showAbsence(std::span<const ScanVotes> votes, const Visibility& thing, cons
   if (logOddsOfPresence(votes, thing.share_of_hits, params) > -params.decided) return false;
   PlaceSet hit, seen_through;
   for (const ScanVotes& vote : votes) hit |= vote.hits, seen_through |= vote.seen_through;
-  return count(seen_through & ~hit) >= params.min_share * static_cast<double>(thing.places);
+  return count(seen_through & thing.places & ~hit) >= params.min_share * count(thing.places);
 }
 
 std::optional<Presence> presenceOf(std::span<const ScanVotes> votes, const Visibility& thing,

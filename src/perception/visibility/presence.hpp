@@ -52,7 +52,7 @@ double logOddsOfPresence(std::span<const ScanVotes> votes, double share_of_hits,
 /// What is known of a thing from all scans.
 struct Visibility {
   double share_of_hits = 0;  ///< shareOfHits()
-  std::size_t places = 0;    ///< that some scan hit
+  PlaceSet places;           ///< that some scan hit
 };
 Visibility visibilityOf(std::span<const ScanVotes> votes);
 

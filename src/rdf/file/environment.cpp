@@ -258,6 +258,10 @@ std::uint64_t LmdbEnvironment::diskBytes() const {
   return static_cast<std::uint64_t>(statusOf(data_lock_, file_).st_blocks) * kBlock;
 }
 
+bool LmdbEnvironment::hasOtherNames() const {
+  return statusOf(data_lock_, file_).st_nlink > 1;
+}
+
 bool LmdbEnvironment::punchHole(std::uint64_t begin, std::uint64_t bytes) const {
   int code = 0;
   do

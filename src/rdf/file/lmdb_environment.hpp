@@ -61,6 +61,7 @@ class LmdbEnvironment final : public Environment {
 
   std::uint64_t fileSize() const;   ///< at this moment
   std::uint64_t diskBytes() const;  ///< that the file takes on the disk; less than its size when it has holes
+  bool hasOtherNames() const;       ///< hard links
   /// Gives the disk space of a part of the file back. False where the file system has no holes.
   bool punchHole(std::uint64_t begin, std::uint64_t bytes) const;
   MDB_env* handle() const { return handle_.get(); }

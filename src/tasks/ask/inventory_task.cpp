@@ -145,7 +145,7 @@ TaskAnswer runChanges(const TaskContext& context, const TaskValues& values) {
   std::size_t unseen = 0, there = 0;
   for (const ObjectStates& states : found.states) {
     there += states.after == perception::PresenceState::Present ? 1 : 0;
-    if (states.after != perception::PresenceState::NotObserved) continue;
+    if (!wasNotObservedAgain(states)) continue;
     ++unseen;
     if (!values.flag("unobserved")) continue;
     answer.rows.push_back(unobservedRow(map, states));

@@ -60,8 +60,9 @@ std::vector<ChangedPoint> changedPoints(const mapping::MapReader& map, const Sit
     }
     if (!has_changes) continue;
     for (const mapping::Cloud* cloud : mapping::timedClouds(clouds)) {
-      if (changes.until_s && *cloud->time_s > *changes.until_s) continue;
-      const bool is_before = *cloud->time_s < changes.since_s;
+      const double time_s = *cloud->time_s;
+      if (time_s > changes.until_s.value_or(time_s) || time_s < changes.from_s.value_or(time_s)) continue;
+      const bool is_before = time_s < changes.since_s;
       regions.forEachPoint(region, *cloud, [&](const Eigen::Vector3d& p_map, std::uint32_t cluxel, std::size_t point) {
         if (of_cluxel[cluxel] == nullptr) return;
         for (const ThingOfChange& of : *of_cluxel[cluxel]) {

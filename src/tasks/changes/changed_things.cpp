@@ -175,17 +175,13 @@ class Things {
 
   /// Whether the object is there at the other time, too, and what the visits with it found at the place of the part, of
   /// which `votes` tell, does not show that the part is away.
-  bool isHiddenPart(const ObjectStates& object, VisitVotes votes) const {
+  bool isHiddenPart(const ObjectStates& object, const VisitVotes& votes) const {
     if (stateAtOtherTime(object) != PresenceState::Present) return false;
-    const std::size_t all = votes.size();
-    const auto isWithIt = [&](const perception::ScanVotes& vote) {
-      return std::binary_search(object.visits.begin(), object.visits.end(), static_cast<std::uint32_t>(vote.time_s));
-    };
     const bool is_known_with_it = std::any_of(object.visits.begin(), object.visits.end(), [&](std::uint32_t visit) {
       return survey_.visits.isAfter(visit) == (time_ == kBefore);
     });
-    std::erase_if(votes, [&](const perception::ScanVotes& vote) { return !isWithIt(vote); });
-    return is_known_with_it && votes.size() < all && !isAwayAtEnd(votes);
+    const VisitVotes with_it = votesOn(object.visits, votes);
+    return is_known_with_it && with_it.visits.size() < votes.visits.size() && !isAwayAtEnd(with_it);
   }
 
   bool isNearChange(const Eigen::AlignedBox3d& box, std::size_t clusters) const {

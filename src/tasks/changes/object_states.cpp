@@ -30,7 +30,8 @@ bool sawThroughAll(std::span<const perception::ScanVotes> votes, const perceptio
   constexpr double kNearlyAll = 0.9;
   perception::PlaceSet hit, seen_through;
   for (const perception::ScanVotes& vote : votes) hit |= vote.hits, seen_through |= vote.seen_through;
-  return hit.none() && static_cast<double>(seen_through.count()) >= kNearlyAll * static_cast<double>(thing.places);
+  return hit.none() && static_cast<double>((seen_through & thing.places).count()) >=
+                           kNearlyAll * static_cast<double>(thing.places.count());
 }
 
 }  // namespace

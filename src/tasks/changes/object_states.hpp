@@ -31,6 +31,12 @@ inline bool changedAsWhole(const ObjectStates& states) {
   return states.was_away || states.is_all_gone;
 }
 
+/// Whether it was there, and scans of the later time do not tell of it.
+inline bool wasNotObservedAgain(const ObjectStates& states) {
+  return states.before == perception::PresenceState::Present &&
+         states.after == perception::PresenceState::NotObserved;
+}
+
 /// The states that the votes of scans before `since_s` and from it on tell. `votes` ascend by time.
 ObjectStates statesOf(std::uint32_t object, std::span<const perception::ScanVotes> votes, double since_s);
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <tuple>
@@ -35,30 +36,44 @@ std::vector<double> scanTimes(const std::vector<mapping::Cloud>& clouds) {
   return times_s;
 }
 
-double beginOfLastVisit(const std::vector<mapping::Cloud>& clouds) {
+/// "the map has", or "until ... the map has": what is not asked about does not count.
+std::string mapHas(const ChangeTimes& times) {
+  return times.until_s ? "until " + dateTimeText(*times.until_s) + " the map has" : std::string("the map has");
+}
+
+double beginOfLastVisit(const std::vector<mapping::Cloud>& clouds, const ChangeTimes& times) {
   if (clouds.size() == 1)
-    throw Error(ErrorKind::InvalidArgument, "the map has one scan only: changes are told from scans of two visits");
+    throw Error(ErrorKind::InvalidArgument,
+                mapHas(times) + " one scan only: changes are told from scans of two visits");
   const std::vector<Visit> visits = visitsOf(clouds);
   if (visits.empty())
     throw Error(ErrorKind::InvalidArgument,
-                "no cloud of the map has a time and a pose, so nothing tells what came later: give times with the "
-                "scans (times.txt, or a manifest)");
+                times.until_s ? mapHas(times) + " no scan with a time and a pose"
+                              : "no cloud of the map has a time and a pose, so nothing tells what came later: give "
+                                "times with the scans (times.txt, or a manifest)");
   if (visits.size() == 1)
     throw Error(ErrorKind::InvalidArgument,
-                "all clouds were taken without a pause of half an hour: tell from when on they count as later",
+                mapHas(times) +
+                    " scans without a pause of half an hour only: tell from when on they count as later",
                 Remedy::NameTime);
   return visits.back().begin_s;
 }
 
-void requireBothSides(const std::vector<double>& times_s, double since_s) {
+/// `times_s`: of the scans that are asked about; `all_s`: of all.
+void requireBothSides(const std::vector<double>& times_s, const std::vector<double>& all_s, double since_s,
+                      const ChangeTimes& times) {
+  if (times.until_s && *times.until_s < since_s)
+    throw Error(ErrorKind::InvalidArgument, "the changes since " + dateTimeText(since_s) + " are asked for until " +
+                                                dateTimeText(*times.until_s) + ", which is earlier");
   const auto after = std::lower_bound(times_s.begin(), times_s.end(), since_s);
   if (after != times_s.begin() && after != times_s.end()) return;
   const std::string known =
-      times_s.empty() ? "no cloud has both"
-                      : "they were taken from " + dateTimeText(times_s.front()) + " to " + dateTimeText(times_s.back());
-  throw Error(ErrorKind::InvalidArgument, "no cloud with time and pose lies " +
-                                              std::string(after == times_s.end() ? "at or after " : "before ") +
-                                              dateTimeText(since_s) + ": " + known);
+      all_s.empty() ? "no cloud has both"
+                    : "they were taken from " + dateTimeText(all_s.front()) + " to " + dateTimeText(all_s.back());
+  const std::string until = times.until_s ? " and until " + dateTimeText(*times.until_s) : std::string();
+  throw Error(ErrorKind::InvalidArgument,
+              "no cloud with time and pose lies " + std::string(after == times_s.end() ? "at or after " : "before ") +
+                  dateTimeText(since_s) + until + ": " + known);
 }
 
 bool areOfOneSize(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
@@ -133,10 +148,12 @@ std::string_view nameOf(SiteChange::Kind kind) {
 }
 
 std::vector<Visit> visitsOf(const std::vector<mapping::Cloud>& clouds) {
+  const std::vector<double> times_s = scanTimes(clouds);
+  const Visits numbers(times_s, std::numeric_limits<double>::infinity());
   std::vector<Visit> visits;
-  for (const double time_s : scanTimes(clouds)) {
-    if (visits.empty() || time_s - visits.back().end_s > kPauseOfVisits_s) visits.push_back({time_s, time_s, 0});
-    visits.back().end_s = time_s;
+  for (std::uint32_t scan = 0; scan < times_s.size(); ++scan) {
+    if (numbers.ofScan(scan) == visits.size()) visits.push_back({times_s[scan], times_s[scan], 0});
+    visits.back().end_s = times_s[scan];
     ++visits.back().scans;
   }
   return visits;
@@ -147,10 +164,10 @@ SiteChanges changesIn(const mapping::MapReader& map, const ChangeTimes& times, u
   ComparedTimes compared;
   compared.from_s = times.from_s.value_or(compared.from_s), compared.until_s = times.until_s.value_or(compared.until_s);
   const std::vector<mapping::Cloud> clouds = cloudsWithin(map.clouds(), compared);
-  compared.since_s = times.since_s ? *times.since_s : beginOfLastVisit(clouds);
-  requireBothSides(scanTimes(clouds), compared.since_s);
+  compared.since_s = times.since_s ? *times.since_s : beginOfLastVisit(clouds, times);
+  requireBothSides(scanTimes(clouds), scanTimes(map.clouds()), compared.since_s, times);
   ChangeSurvey survey = surveyOf(map, compared, max_cluxels, threads);
-  SiteChanges found{compared.since_s, times.until_s, {}, {}};
+  SiteChanges found{compared.since_s, times.until_s, times.from_s, {}, {}};
   found.changes = withMoves(map, changedThings(survey));
   found.states = std::move(survey.states);
   return found;

@@ -41,6 +41,7 @@ struct ChangeTimes {
 struct SiteChanges {
   double since_s = 0;                ///< scans from this time on are "after"
   std::optional<double> until_s{};   ///< later scans do not count
+  std::optional<double> from_s{};    ///< earlier scans do not count
   std::vector<ObjectStates> states;  ///< of each object but ground, by number
   std::vector<SiteChange> changes;   ///< by first cluxel
 };

@@ -13,12 +13,23 @@ constexpr perception::PresenceParams kPresence;
 /// The visits of which the log-odds of "there" are as is asked.
 template <typename Accepts>
 std::vector<std::uint32_t> visitsWhere(const VisitVotes& votes, const Accepts& accepts) {
-  const double share_of_hits = perception::shareOfHits(votes);
+  const std::span all(votes.votes);
+  const double share_of_hits = perception::shareOfHits(all);
   std::vector<std::uint32_t> visits;
-  for (std::size_t i = 0; i < votes.size(); ++i)
-    if (accepts(logOddsOfPresence(std::span(votes).subspan(i, 1), share_of_hits, kPresence)))
-      visits.push_back(static_cast<std::uint32_t>(votes[i].time_s));
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (accepts(logOddsOfPresence(all.subspan(i, 1), share_of_hits, kPresence))) visits.push_back(votes.visits[i]);
   return visits;
+}
+
+/// Visits come in ascending order.
+void addVote(std::uint32_t visit, const perception::ScanVotes& vote, VisitVotes& all) {
+  if (all.visits.empty() || all.visits.back() != visit) {
+    all.visits.push_back(visit);
+    all.votes.emplace_back();
+  }
+  perception::ScanVotes& sum = all.votes.back();
+  sum.hits |= vote.hits, sum.seen_through |= vote.seen_through;
+  sum.seen_through &= ~sum.hits;
 }
 
 }  // namespace
@@ -45,21 +56,23 @@ void VoteOfPlaces::addPlace(const ScanNumbers& hits, const ScanNumbers& passed) 
 }
 
 VisitVotes VoteOfPlaces::take() {
-  VisitVotes votes;
-  for (auto& [visit, vote] : of_visit_) {
-    vote.time_s = visit;
-    addVotes(votes, vote);
-  }
-  return votes;
+  VisitVotes all;
+  for (const auto& [visit, vote] : of_visit_) addVote(visit, vote, all);
+  return all;
 }
 
 VisitVotes votesByVisit(std::span<const perception::ScanVotes> votes, const Visits& visits) {
-  VisitVotes merged;
-  for (perception::ScanVotes vote : votes) {
-    vote.time_s = visits.at(vote.time_s);
-    addVotes(merged, vote);
-  }
-  return merged;
+  VisitVotes all;
+  for (const perception::ScanVotes& vote : votes) addVote(visits.at(vote.time_s), vote, all);
+  return all;
+}
+
+VisitVotes votesOn(std::span<const std::uint32_t> visits, const VisitVotes& votes) {
+  VisitVotes some;
+  for (std::size_t i = 0; i < votes.visits.size(); ++i)
+    if (std::binary_search(visits.begin(), visits.end(), votes.visits[i]))
+      addVote(votes.visits[i], votes.votes[i], some);
+  return some;
 }
 
 std::vector<std::uint32_t> visitsWithIt(const VisitVotes& votes) {
@@ -72,7 +85,7 @@ std::vector<std::uint32_t> visitsWithoutIt(const VisitVotes& votes) {
 }
 
 bool isAwayAtEnd(const VisitVotes& votes) {
-  return stateAfter(votes, perception::visibilityOf(votes), kPresence) == perception::PresenceState::Absent;
+  return stateAfter(votes.votes, perception::visibilityOf(votes.votes), kPresence) == perception::PresenceState::Absent;
 }
 
 bool haveCommon(std::span<const std::uint32_t> ascending, std::span<const std::uint32_t> others) {

@@ -32,14 +32,17 @@ class Visits {
   std::vector<std::uint32_t> of_scan_;
 };
 
-/// One vote a visit, by its number; scans of one visit speak together.
-using VisitVotes = std::vector<perception::ScanVotes>;
+/// One vote a visit; scans of one visit speak together, and a place that one of them hit is hit.
+struct VisitVotes {
+  std::vector<std::uint32_t> visits;         ///< ascending
+  std::vector<perception::ScanVotes> votes;  ///< of each of them; without a time
+};
 
 /// Gathers what scans found at the places of a thing.
 class VoteOfPlaces {
  public:
   VoteOfPlaces(const Visits& visits, std::size_t places) : visits_(visits), places_(places) {}
-  /// Places are added in their order. `hits` outweigh `passed` within a visit.
+  /// Places are added in their order.
   void addPlace(const ScanNumbers& hits, const ScanNumbers& passed);
   VisitVotes take();
 
@@ -51,6 +54,9 @@ class VoteOfPlaces {
 
 /// Merges votes of scans, which ascend by time.
 VisitVotes votesByVisit(std::span<const perception::ScanVotes> votes, const Visits& visits);
+
+/// Those of some visits, which ascend.
+VisitVotes votesOn(std::span<const std::uint32_t> visits, const VisitVotes& votes);
 
 /// The visits on which the thing was surely there, ascending.
 std::vector<std::uint32_t> visitsWithIt(const VisitVotes& votes);

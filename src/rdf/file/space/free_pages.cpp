@@ -95,6 +95,7 @@ std::uint64_t freePageCount(const ReadTransaction& transaction) {
 std::uint64_t releaseFreePages(Environment& environment) {
   auto& lmdb = dynamic_cast<LmdbEnvironment&>(environment);
   const WritersTurn turn(lmdb);
+  if (lmdb.hasOtherNames()) return 0;  // whoever reads by another name is in another table of readers
   const ReadTransaction newest = lmdb.read();
   MDB_stat stat;
   newest.impl().check(mdb_stat(newest.impl().live(), lmdb.mainTable(), &stat), "read the map");
