@@ -45,8 +45,8 @@ TEST_F(MapChangeFacade, ExtendsRetractsAndMerges) {
     const bool is_there =
         std::any_of(objects.begin(), objects.end(), [&](const Object& o) { return o.iri == change.iri; });
     EXPECT_EQ(is_there, change.kind != ChangeKind::Gone) << change.iri;
-    const bool has_own_name = change.kind == ChangeKind::Added || change.kind == ChangeKind::Gone ||
-                              change.kind == ChangeKind::Redecided;
+    const bool has_own_name =
+        change.kind == ChangeKind::Added || change.kind == ChangeKind::Gone || change.kind == ChangeKind::Redecided;
     EXPECT_EQ(change.derived_from.empty(), has_own_name);
   }
   std::vector<std::string> names;

@@ -130,7 +130,7 @@ Compaction compactIfSparse(const fs::path& map, const rdf::FreeSpace& space, Pro
 void freeSpaceOfChange(const fs::path& map, const rdf::FreeSpace& space, ProgressSink& sink) {
   if (compactIfSparse(map, space, sink, kMaxFreeShareOfChanged) != Compaction::NotNeeded) return;
   try {
-    if (isMuch(space.freeOnDisk(), space.disk_bytes, kMaxFreeShare))
+    if (isMuch(space.freeOnDisk(), space.disk_bytes, kMaxFreeShareOfDisk))
       rdf::releaseFreePages(*rdf::Environment::open(map, rdf::OpenMode::ReadWrite));
   } catch (const std::exception& error) {
     noteFailure(map, error, sink);

@@ -33,8 +33,7 @@ inline bool changedAsWhole(const ObjectStates& states) {
 
 /// Whether it was there, and scans of the later time do not tell of it.
 inline bool wasNotObservedAgain(const ObjectStates& states) {
-  return states.before == perception::PresenceState::Present &&
-         states.after == perception::PresenceState::NotObserved;
+  return states.before == perception::PresenceState::Present && states.after == perception::PresenceState::NotObserved;
 }
 
 /// The states that the votes of scans before `since_s` and from it on tell. `votes` ascend by time.

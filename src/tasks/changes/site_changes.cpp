@@ -53,8 +53,7 @@ double beginOfLastVisit(const std::vector<mapping::Cloud>& clouds, const ChangeT
                                 "times with the scans (times.txt, or a manifest)");
   if (visits.size() == 1)
     throw Error(ErrorKind::InvalidArgument,
-                mapHas(times) +
-                    " scans without a pause of half an hour only: tell from when on they count as later",
+                mapHas(times) + " scans without a pause of half an hour only: tell from when on they count as later",
                 Remedy::NameTime);
   return visits.back().begin_s;
 }
@@ -71,9 +70,9 @@ void requireBothSides(const std::vector<double>& times_s, const std::vector<doub
       all_s.empty() ? "no cloud has both"
                     : "they were taken from " + dateTimeText(all_s.front()) + " to " + dateTimeText(all_s.back());
   const std::string until = times.until_s ? " and until " + dateTimeText(*times.until_s) : std::string();
-  throw Error(ErrorKind::InvalidArgument,
-              "no cloud with time and pose lies " + std::string(after == times_s.end() ? "at or after " : "before ") +
-                  dateTimeText(since_s) + until + ": " + known);
+  throw Error(ErrorKind::InvalidArgument, "no cloud with time and pose lies " +
+                                              std::string(after == times_s.end() ? "at or after " : "before ") +
+                                              dateTimeText(since_s) + until + ": " + known);
 }
 
 bool areOfOneSize(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
