@@ -29,4 +29,10 @@ inline std::string localName(std::string_view iri) {
   return std::string(iri.substr(iri.find_last_of("#/") + 1));
 }
 
+/// All up to the last '#' or '/'; of an IRI with neither ("urn:x:Tree"), up to the last ':'.
+inline std::string namespaceOf(std::string_view iri) {
+  const std::size_t end = iri.find_last_of("#/");
+  return std::string(iri.substr(0, (end != std::string_view::npos ? end : iri.rfind(':')) + 1));
+}
+
 }  // namespace cluxel::rdf

@@ -58,6 +58,23 @@ TEST(OntologyCheck, TakesSuperclassesOfOtherVocabularies) {
             "");
 }
 
+TEST(OntologyCheck, TakesSuperclassesBesideADeclaredClassOfAnotherVocabulary) {
+  EXPECT_EQ(faultsOf("<http://dbpedia.org/ontology/Tree> a owl:Class .\n"
+                     "clx:Lime a owl:Class ; rdfs:subClassOf clx:Tree, <http://dbpedia.org/ontology/Plant> ."),
+            "");
+  EXPECT_EQ(faultsOf("<urn:a:Seat> a owl:Class ; rdfs:subClassOf clx:Object, <urn:b:Plant> ."), "");
+  EXPECT_THAT(faultsOf("<urn:a:Seat> a owl:Class ; rdfs:subClassOf clx:Object, <urn:a:Chair> ."),
+              HasSubstr("there is no class urn:a:Chair"));
+}
+
+TEST(OntologyCheck, ShowsWholeNamesThatDifferInTheNamespaceAlone) {
+  EXPECT_THAT(faultsOf("my:Seat a owl:Class ; rdfs:subClassOf my:Plant, clx:Object ."),
+              AllOf(HasSubstr("Seat: there is no class <http://x/my#Plant>"),
+                    HasSubstr("did you mean <https://w3id.org/cluxel/ontology#Plant>?")));
+  EXPECT_THAT(faultsOf("my:Seat a owl:Class ; rdfs:subClassOf my:Plnt, clx:Object ."),
+              AllOf(HasSubstr("Seat: there is no class Plnt"), Not(HasSubstr("did you mean"))));
+}
+
 TEST(OntologyCheck, RefusesPropertiesThatTheVocabularyLacks) {
   EXPECT_THAT(faultsOf("clx:P a clx:UsualPlace ; clx:usualFor clx:Bush ; clx:nearClas clx:Tree ; clx:within 1.0 ;\n"
                        "  clx:nearClass clx:Tree ; clx:probabilty 0.001 ; my:note \"mine\" ."),

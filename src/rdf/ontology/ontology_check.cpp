@@ -19,10 +19,6 @@ namespace {
 
 using namespace vocabulary;
 
-std::string namespaceOf(const std::string& iri) {
-  return iri.substr(0, iri.find_last_of("#/") + 1);
-}
-
 /// Their terms are defined elsewhere, also when an ontology says more about some of them.
 bool isForeign(const std::string& name_space) {
   constexpr std::array kForeign{kRdf, kRdfs, kOwl, kXsd, kGeo, kSosa, kProv, kDcTerms, kSkos};
@@ -44,10 +40,8 @@ class NameCheck {
   explicit NameCheck(OntologyStatements& ontology) : ontology_(ontology) {}
 
   void check() {
-    for (const std::string& name : ontology_.classes())
-      if (!isForeign(namespaceOf(name))) own_.insert(namespaceOf(name));
-    own_.insert(std::string(kClx));
     for (const OntologyStatement& statement : ontology_.all()) note(statement.quad);
+    noteOwn();
     for (const OntologyStatement& statement : ontology_.all()) {
       checkSuperclass(statement);
       checkProperty(statement);
@@ -59,7 +53,24 @@ class NameCheck {
     const std::string& property = quad.predicate.text;
     const bool is_property = property == rdf("type") && quad.object.text.ends_with("Property");
     if (is_property || property == rdfs("subPropertyOf")) properties_.insert(quad.subject.text);
+    if (property == rdfs("subClassOf")) subclasses_[quad.object.text].insert(quad.subject.text);
     if (property == rdfs("subClassOf")) undeclared_.insert(quad.subject.text);
+  }
+
+  /// An ontology may say something of a class of another vocabulary. Only those that define kinds of objects or parts
+  /// are this ontology's own.
+  void noteOwn() {
+    own_.insert(std::string(kClx));
+    std::set<std::string> below;
+    std::vector<std::string> next{clx("Object"), clx("Part")};
+    while (!next.empty()) {
+      const std::string name = std::move(next.back());
+      next.pop_back();
+      if (!below.insert(name).second) continue;
+      if (ontology_.classes().contains(name) && !isForeign(namespaceOf(name))) own_.insert(namespaceOf(name));
+      const auto found = subclasses_.find(name);
+      if (found != subclasses_.end()) next.insert(next.end(), found->second.begin(), found->second.end());
+    }
   }
 
   void checkSuperclass(const OntologyStatement& statement) {
@@ -82,7 +93,8 @@ class NameCheck {
   }
 
   OntologyStatements& ontology_;
-  std::set<std::string> own_;         ///< namespaces
+  std::set<std::string> own_;                                ///< namespaces
+  std::map<std::string, std::set<std::string>> subclasses_;  ///< by superclass
   std::set<std::string> undeclared_;  ///< what has superclasses, whether it is declared as a class or not
   /// What the program reads needs no declaration.
   std::set<std::string> properties_{clx("color"),     clx("mobility"), clx("mayHavePart"), clx("usualFor"),

@@ -2,6 +2,8 @@
 // Parses ontology files and finds the place of a fault in their text.
 #include "rdf/ontology/ontology_statements.hpp"
 
+#include <algorithm>
+
 #include "base/ascii.hpp"
 #include "base/nearest_name.hpp"
 #include "base/shown_line.hpp"
@@ -38,6 +40,12 @@ std::size_t findSubject(std::string_view text, std::string_view name) {
 /// Blank nodes have labels that no file shows.
 std::string shownName(const Term& term) {
   return term.kind == TermKind::BlankNode ? "what has no name ([ … ])" : localName(term.text);
+}
+
+/// One that differs from the IRI in the namespace alone.
+std::set<std::string>::const_iterator namesake(const std::set<std::string>& known, std::string_view iri) {
+  return std::find_if(known.begin(), known.end(),
+                      [&](const std::string& name) { return name != iri && localName(name) == localName(iri); });
 }
 
 }  // namespace
@@ -85,7 +93,10 @@ void OntologyStatements::faultOfClass(const OntologyStatement& statement) {
   const Term& name = statement.quad.object;
   const std::string property = localName(statement.quad.predicate.text);
   if (name.kind == TermKind::Iri)
-    fault(statement, "there is no class " + localName(name.text), similarNameHint(name.text, classes_));
+    fault(statement,
+          "there is no class " +
+              (namesake(classes_, name.text) != classes_.end() ? "<" + name.text + ">" : localName(name.text)),
+          similarNameHint(name.text, classes_));
   else
     fault(statement,
           property + " has " + (name.kind == TermKind::BlankNode ? "something unnamed" : "a text or number") +
@@ -99,10 +110,11 @@ void OntologyStatements::requireNone() const {
 
 std::string similarNameHint(std::string_view iri, const std::set<std::string>& known) {
   std::vector<std::string> names;
-  names.reserve(known.size());
-  for (const std::string& name : known) names.push_back(localName(name));
-  const auto near = nearestName(localName(iri), names);
-  return near ? "did you mean '" + *near + "'?" : "";
+  for (const std::string& name : known)
+    if (namespaceOf(name) == namespaceOf(iri)) names.push_back(localName(name));
+  if (const auto near = nearestName(localName(iri), names)) return "did you mean '" + *near + "'?";
+  const auto same = namesake(known, iri);
+  return same != known.end() ? "did you mean <" + *same + ">?" : "";
 }
 
 }  // namespace cluxel::rdf

@@ -45,7 +45,8 @@ class OntologyStatements {
   std::set<std::string> classes_;
 };
 
-/// "did you mean 'Plant'?" for the nearest of these IRIs, or "". Only what follows the namespace is compared.
+/// "did you mean 'Plant'?" for the nearest of these IRIs in the same namespace; else "did you mean <…#Plant>?" for one
+/// that differs in the namespace alone; else "".
 std::string similarNameHint(std::string_view iri, const std::set<std::string>& known);
 
 /// Adds the faults for which an ontology is refused wherever it comes from.
