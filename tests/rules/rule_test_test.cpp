@@ -182,13 +182,13 @@ TEST_F(RuleTestFolder, TellsWhatIsWrongWithAGoldenFile) {
   const std::string test = binTest("{ golden: golden.json, min_recall: 1 }");
   for (const auto& [text, fault] : std::initializer_list<std::pair<const char*, const char*>>{
            {"{\"objects\": [\n", "golden.json:2:"},
-           {"null", "there is null where an object {…} is wanted"},
+           {"null", "there is null where an object {…} or a list […] is wanted"},
            {"{}", "it has no 'objects'"},
            {R"({"objects": 3})", "'objects' is not a list"},
            {R"({"objects": [{"class": "clx:Tree", "min": [0, 0, 0]}]})", "object 1: it has no 'max'"},
            {R"({"objects": [{"class": "clx:Tree", "min": [0, 0], "max": [1, 1, 1]}]})", "a list is too short"},
            {R"({"objects": [{"class": 5, "min": [0, 0, 0], "max": [1, 1, 1]}]})",
-            "there is number where string is wanted"}}) {
+            "there is a number where a text is wanted"}}) {
     writeFile(folder_ / "golden.json", text);
     const std::string report = textOf(run(test));
     EXPECT_NE(report.find(fault), std::string::npos) << report;

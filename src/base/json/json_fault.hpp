@@ -7,7 +7,7 @@
 
 namespace cluxel {
 
-/// "it has no 'name'", "a list is too short", "there is null where an object {…} is wanted".
+/// "it has no 'name'", "a list is too short", "there is a number where a text is wanted".
 std::string plainFault(const nlohmann::json::exception& fault);
 
 }  // namespace cluxel
