@@ -22,6 +22,16 @@ ObjectMembers decided(const std::string& name, double confidence) {
   return object;
 }
 
+TEST(ObjectChanges, RoundingIsNoOtherConfidence) {
+  const ObjectMembers some = decided("tree", 0.5);
+  ObjectMembers other_parts = decided("tree", 0.5 + 1e-12);
+  EXPECT_TRUE(some.isDecidedAs(other_parts));
+  other_parts.parts = 7;
+  EXPECT_FALSE(some.isDecidedAs(other_parts));
+  EXPECT_FALSE(some.hasOtherConfidence(other_parts)) << "only its parts differ";
+  EXPECT_TRUE(some.hasOtherConfidence(decided("tree", 0.51)));
+}
+
 TEST(ObjectChanges, TellWhatIsDecidedOtherwise) {
   const std::string trunk = "clx:TreeTrunk", top = "clx:TreeTop";
   ObjectMembers swapped = decided("swapped", 0.9), was_swapped = swapped, other_order = decided("order", 0.9),

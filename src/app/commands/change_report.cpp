@@ -106,7 +106,7 @@ std::string redecidedByClass(const std::vector<mapping::RedecidedObject>& object
     ids.push_back(after.id);
     parts += before.parts != after.parts ? 1 : 0;
     rules += before.rule_id != after.rule_id ? 1 : 0;
-    confidences += before.confidence != after.confidence ? 1 : 0;
+    confidences += before.hasOtherConfidence(after) ? 1 : 0;
   }
   return byClass(ids, classes, [](const ContentHash& id) { return id; }) + " (other parts: " + std::to_string(parts) +
          ", another rule: " + std::to_string(rules) + ", another confidence: " + std::to_string(confidences) + ")";

@@ -56,8 +56,12 @@ void ObjectMembers::addToPart(std::uint64_t part, std::uint64_t seed) {
 }
 
 bool ObjectMembers::isDecidedAs(const ObjectMembers& other) const {
+  return rule_id == other.rule_id && parts == other.parts && !hasOtherConfidence(other);
+}
+
+bool ObjectMembers::hasOtherConfidence(const ObjectMembers& other) const {
   constexpr double rounding = 1e-9;
-  return rule_id == other.rule_id && parts == other.parts && std::abs(confidence - other.confidence) <= rounding;
+  return std::abs(confidence - other.confidence) > rounding;
 }
 
 std::vector<ObjectMembers> membersOf(const std::vector<rules::SemanticObject>& objects,

@@ -36,6 +36,8 @@ struct ObjectMembers {
 
   void addToPart(std::uint64_t part, std::uint64_t seed);
   bool isDecidedAs(const ObjectMembers& other) const;
+  /// By more than rounding.
+  bool hasOtherConfidence(const ObjectMembers& other) const;
   MemberPlace placeOf(std::size_t member) const { return places.empty() ? kNoMemberPlace : places[member]; }
 };
 
