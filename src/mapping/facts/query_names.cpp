@@ -165,7 +165,7 @@ std::optional<QueryNameFault> historyNamedIn(const ast::Query& query) {
   return check.history();
 }
 
-SourceLocation placeIn(const ast::Query& query, const std::string& name, ast::SourceOffset at) {
+SourceLocation locationIn(const ast::Query& query, const std::string& name, ast::SourceOffset at) {
   return locate(name, query.text, at);
 }
 
@@ -176,7 +176,7 @@ std::vector<Diagnostic> checkRuleNames(const std::string& name, const std::strin
   const ast::Query query = sparql::parseQuery(text, options);
   FaultList faults(name, text);
   for (const QueryNameFault& fault : faultsOfNames(query, ontology))
-    faults.error(placeIn(query, name, fault.at), fault.message);
+    faults.error(locationIn(query, name, fault.at), fault.message);
   return faults.sorted();
 }
 

@@ -32,7 +32,7 @@ std::optional<QueryNameFault> historyNamedIn(const sparql::ast::Query& query);
 /// The faults of a SPARQL rule with their places. Throws InputError when it cannot be parsed.
 std::vector<Diagnostic> checkRuleNames(const std::string& name, const std::string& text,
                                        const rdf::OntologyView& ontology);
-/// The place of a byte of the query's text.
-SourceLocation placeIn(const sparql::ast::Query& query, const std::string& name, sparql::ast::SourceOffset at);
+/// Line and column of a byte of the query's text.
+SourceLocation locationIn(const sparql::ast::Query& query, const std::string& name, sparql::ast::SourceOffset at);
 
 }  // namespace cluxel::mapping

@@ -42,7 +42,7 @@ void refuseHistory(const NamedText& rule) {
   options.file = rule.name;
   const sparql::ast::Query query = parseQuery(rule.text, options);
   if (const auto fault = historyNamedIn(query))
-    throw InputError(placeIn(query, rule.name, fault->at), fault->message, "leave the graph out");
+    throw InputError(locationIn(query, rule.name, fault->at), fault->message, "leave the graph out");
 }
 
 /// Whether some graph but history has the fact. History is not part of the map function.
