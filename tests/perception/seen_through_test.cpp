@@ -185,6 +185,26 @@ TEST(SeenThrough, AThinPoleThatLeftIsGone) {
   EXPECT_GE(found, kRounds * 8 / 10);
 }
 
+/// A thing of this width that was at the origin: what a laser 6 m away, with dense rays, finds of it after it left.
+PlaceVerdict verdictOfWidth(double width_m) {
+  std::mt19937 random(45);
+  const Eigen::Vector3d sensor(-6, 0, 1.2);
+  const Grid dense{0.001, 0.004, 0, 0};
+  const Points ends =
+      endsSeen(sensor, 0, dense, true, random, [](const Eigen::Vector3d&) { return std::optional<double>(); });
+  const auto half_m = static_cast<float>(width_m / 2);
+  const Place place{{0, 0, 1}, {-half_m, -half_m, -0.4F}, {half_m, half_m, 0.4F}};
+  return raysTo(ends, sensor).verdictAt(place, {});
+}
+
+TEST(SeenThrough, PassingRaysTellNothingOfWires) {
+  const PlaceVerdict wire = verdictOfWidth(0.03), post = verdictOfWidth(0.08);
+  EXPECT_EQ(wire.verdict, RayVerdict::SeenThrough);
+  EXPECT_TRUE(wire.is_aside) << "3 cm are within the errors of points";
+  EXPECT_EQ(post.verdict, RayVerdict::SeenThrough);
+  EXPECT_FALSE(post.is_aside);
+}
+
 /// A thing with a flat top in the plane z = height.
 struct Slab {
   Eigen::AlignedBox3d box;
