@@ -55,8 +55,9 @@ struct MapInputs {
   std::vector<NamedText> ontology;  ///< Turtle
   std::vector<NamedText> rules;     ///< YAML: the first `rule_roots` are loaded, the others are included by them
   std::size_t rule_roots = 0;
-  std::vector<NamedText> sparql_rules;  ///< CONSTRUCT queries, in the order in which they run: of files that of names
-  NamedText model;                      ///< JSON
+  /// CONSTRUCT queries, in the order in which they run; those of files are sorted by name.
+  std::vector<NamedText> sparql_rules;
+  NamedText model;  ///< JSON
   MapParams params;
   Eigen::Vector3d map_origin = Eigen::Vector3d::Zero();  ///< of the map frame in the outer frame [m]
   std::string crs;                                       ///< of the outer frame, as given; may be empty

@@ -18,8 +18,10 @@ namespace cluxel::mapping {
 inline constexpr std::string_view kOperatorRule = "operator";
 
 enum class StatementEffect : std::uint8_t {
-  Applied,    ///< the map says what is stated
-  Dormant,    ///< no object, or a class-wide one, owns the anchored points, if they are there; or the class is none
+  Applied,  ///< the map says what is stated
+  /// It has no effect now: the map lacks the anchored points, no object owns them, or only one that holds all of its
+  /// class does; or the ontology lacks the stated class.
+  Dormant,
   Overruled,  ///< another statement about the same object comes first
 };
 std::string_view nameOf(StatementEffect effect);

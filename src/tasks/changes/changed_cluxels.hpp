@@ -80,8 +80,8 @@ inline constexpr double kMostStopped = 0.75;
 ///   decided ones in and around it that lie at the height of its middle or higher, 90 % changed like it. Then all is
 ///   gone from there upwards, as of a hedge that was cut. What scans with poor poses miss is mostly an edge of
 ///   something that stays, and a gap in a crown has leaves beside it.
-/// And of the rays near its cluxels at most three ended before them for each four that passed, and at a quarter of its
-/// cluxels or more some ray passed that would have ended at the thing (PlaceVerdict::is_aside).
+/// And of the rays near its cluxels at most three ended before them for each four that passed, and at least a
+/// quarter of its cluxels must each be passed by a ray that would have ended at the thing (PlaceVerdict::is_aside).
 std::vector<ChangeGroup> clustersOf(CluxelChange kind, const ChangedCluxels& all);
 /// Those of the possible clusters that clustersOf() keeps. `all` need not hold more than these and what intersects
 /// them.
