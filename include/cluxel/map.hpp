@@ -133,10 +133,11 @@ class CLUXEL_API Map {
   /// that are there with the same pose are passed over. Each batch is one commit; progress and notes go to `sink`.
   MapChanges extend(const std::vector<std::filesystem::path>& scans, const ChangeOptions& options, ProgressSink& sink);
   /// Removes scans, named as in CloudPose; those that were removed before are noted. NotFound for an unknown name;
-  /// InvalidArgument when none would be left.
+  /// InvalidArgument when none would be left, or when the file at a path holds another scan of the map now: to find
+  /// out, the files at such paths are read.
   MapChanges retract(const std::vector<std::string>& clouds, const ChangeOptions& options, ProgressSink& sink);
   /// Gives scans other poses, as after a loop closure. Many scans move in several commits, each of which is the exact
-  /// map of the poses that the scans have then.
+  /// map of the poses that the scans have then. No files are read: a path names what was read from it.
   MapChanges repose(const std::vector<CloudPose>& poses, const ChangeOptions& options, ProgressSink& sink);
   /// Merges maps, all in the frame of the first, into the new file `target`, and opens it: the map that build() makes
   /// from all scans. A `target` that is the merge of these maps already is left as it is. InvalidArgument when another

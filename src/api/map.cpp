@@ -229,7 +229,8 @@ MapChanges Map::extend(const std::vector<std::filesystem::path>& scans, const Ch
 
 MapChanges Map::retract(const std::vector<std::string>& clouds, const ChangeOptions& options, ProgressSink& sink) {
   return impl_->writing(sink, [&](ProgressSink& callbacks) {
-    const auto ids = mapping::cloudsNamed(impl_->file, clouds, callbacks, mapping::IncludeRetracted::Yes);
+    const auto ids = mapping::cloudsNamed(impl_->file, clouds, callbacks,
+                                          {mapping::IncludeRetracted::Yes, mapping::CompareFiles::Yes});
     return changesOf(mapping::retractScans(impl_->file, ids, changeParams(options), callbacks));
   });
 }
@@ -238,7 +239,7 @@ MapChanges Map::repose(const std::vector<CloudPose>& poses, const ChangeOptions&
   std::vector<std::string> names;
   for (const CloudPose& pose : poses) names.push_back(pose.cloud);
   return impl_->writing(sink, [&](ProgressSink& callbacks) {
-    const auto ids = mapping::cloudsNamed(impl_->file, names, callbacks);
+    const auto ids = mapping::cloudsNamed(impl_->file, names, callbacks, {});
     std::vector<mapping::ScanPose> moves;
     for (std::size_t i = 0; i < ids.size(); ++i) moves.push_back({ids[i], poseOf(poses[i])});
     return changesOf(mapping::moveScans(impl_->file, moves, changeParams(options), callbacks));

@@ -30,7 +30,9 @@ class NamedClouds : public testing::Test, public ProgressSink {
 
   fs::path map() const { return folder.path() / "map.clx"; }
   fs::path file(std::size_t i) const { return folder.path() / ("scan" + std::to_string(i) + ".pcd"); }
-  std::vector<ScanId> named(const std::string& name) { return cloudsNamed(map(), std::vector{name}, *this); }
+  std::vector<ScanId> named(const std::string& name, CompareFiles compare = CompareFiles::Yes) {
+    return cloudsNamed(map(), std::vector{name}, *this, {IncludeRetracted::No, compare});
+  }
 
   ScratchFolder folder;
   std::vector<ScanId> ids;
@@ -57,6 +59,8 @@ TEST_F(NamedClouds, AreRefusedWhenFilesWereSwapped) {
       EXPECT_THAT(error.what(), HasSubstr("is cloud " + ids[i].hex() + ". Name one of them by its id"));
     }
     EXPECT_THAT(named(ids[i].hex().substr(0, 8)), ElementsAre(ids[i])) << "the id is plain";
+    EXPECT_THAT(named(file(i), CompareFiles::No), ElementsAre(ids[i])) << "what was read from it";
+    EXPECT_EQ(notes, "");
   }
 }
 

@@ -42,8 +42,8 @@ ExitCode retract(const ChangeOptions& options, Session& session) {
   mapping::requireChangeable(options.map, options.change);
   mapping::ChangeParams params = options.change;
   params.threads = session.threadCount();
-  const auto clouds =
-      mapping::cloudsNamed(options.map, options.clouds, session.console, mapping::IncludeRetracted::Yes);
+  const auto clouds = mapping::cloudsNamed(options.map, options.clouds, session.console,
+                                           {mapping::IncludeRetracted::Yes, mapping::CompareFiles::Yes});
   printChange(options.map, retractScans(options.map, clouds, params, session.console), params, session);
   return ExitCode::Done;
 }

@@ -63,7 +63,7 @@ void requireSameScan(const std::string& name, const scan::ScanId& meant, const s
 }  // namespace
 
 std::vector<scan::ScanId> cloudsNamed(const fs::path& file, std::span<const std::string> names, ProgressSink& sink,
-                                      IncludeRetracted include) {
+                                      CloudNaming naming) {
   const auto environment = rdf::Environment::open(file, rdf::OpenMode::ReadOnly);
   const rdf::ReadTransaction transaction = environment->read();
   const std::vector<Cloud> clouds = storedClouds(transaction);
@@ -76,8 +76,9 @@ std::vector<scan::ScanId> cloudsNamed(const fs::path& file, std::span<const std:
     if (fitting.size() > 1)
       throw Error(ErrorKind::InvalidArgument, file.string() + ": '" + name + "' names " +
                                                   std::to_string(fitting.size()) + " clouds; name each by its id");
-    if (fitting.size() == 1) requireSameScan(name, fitting.front(), clouds, sink);
-    if (fitting.empty() && include == IncludeRetracted::Yes) {
+    if (fitting.size() == 1 && naming.compare == CompareFiles::Yes)
+      requireSameScan(name, fitting.front(), clouds, sink);
+    if (fitting.empty() && naming.include == IncludeRetracted::Yes) {
       if (!former) former = retractedScans(transaction);
       for (const RetractedScan& scan : *former)  // nothing is to be done for any of them
         if (std::any_of(scan.sources.begin(), scan.sources.end(),
