@@ -206,6 +206,17 @@ TEST_F(Program, WhatTheSystemRefusesToLookAtIsToldLikeWhatIsNotThere) {
   }
 }
 
+TEST_F(Program, ALabelMapServesSeveralMapsAndEachDoubtAboutItIsNotedOnce) {
+  const std::string map = path("map.clx").string(), labels = path("own_class.yaml").string();
+  writeFile(labels, "counts_as: {Bsh: Bush}\nlabels:\n  30: {name: bush, object: Bush}\n");
+  const Outcome outcome = run("evaluate " + map + " " + map + " --truth " + labels);
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const std::string doubt = "counts_as: the ontology of the map has no class 'Bsh'";
+  const std::size_t first = outcome.err.find(doubt);
+  ASSERT_NE(first, std::string::npos) << outcome.err;
+  EXPECT_EQ(outcome.err.find(doubt, first + 1), std::string::npos) << outcome.err;
+}
+
 TEST_F(Program, AnEmptyFileIsFilledByWhatMakesMapsAndStores) {
   const std::string store = path("filled_store.clx").string(), map = path("filled.clx").string();
   for (const std::string& file : {store, map}) writeFile(file, "");

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // `cluxel evaluate`: the accuracy of a map; minimum values set the exit code.
 #include <charconv>
+#include <set>
 
 #include "app/command.hpp"
 #include "app/map_condition.hpp"
@@ -61,11 +62,12 @@ bool meetsBars(const tasks::MapEvaluation& evaluation, const EvaluateOptions& op
 tasks::MapEvaluation evaluateAll(const EvaluateOptions& options, Session& session) {
   const auto truth = tasks::TruthSource::open(options.truth, session.dataHome());
   std::optional<tasks::MapEvaluation> sum;
+  std::set<std::string> doubts;  // those of several maps are mostly the same
   for (const fs::path& file : options.maps) {
     const mapping::MapReader map(file);
     noteUnfinished(file, map.isFinished(), options.allow_unfinished, session);
     for (const std::string& doubt : truth.doubtfulClasses(classCatalogueOf(map.inputs().ontology)))
-      session.console.note(doubt);
+      if (doubts.insert(doubt).second) session.console.note(doubt);
     tasks::MapEvaluation one = evaluateMap(map, truth);
     if (sum)
       sum->add(one);

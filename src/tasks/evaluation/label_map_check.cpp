@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "base/nearest_name.hpp"
-#include "cluxel/error.hpp"
 #include "rdf/iri.hpp"
 #include "rdf/vocabulary.hpp"
 
@@ -27,12 +26,13 @@ std::vector<std::string> LabelMapCheck::run() {
   return std::move(doubts_);
 }
 
+/// One label map serves maps with different ontologies: a class that one of them lacks may be right for another.
 void LabelMapCheck::checkCountsAs() {
   for (const auto& [name, target] : labels_.countsAs()) {
     if (iri_of_.contains(name)) continue;
-    if (const std::string hint = nearestHint(name); !hint.empty())
-      throw InputError({.file = file_}, "counts_as: the ontology of the map has no class '" + name + "'", hint);
-    add("counts_as: the ontology of the map has no class '" + name + "', so no answer is of it");
+    const std::string hint = nearestHint(name);
+    add("counts_as: the ontology of the map has no class '" + name + "', so no answer is of it" +
+        (hint.empty() ? "" : "; ") + hint);
   }
 }
 

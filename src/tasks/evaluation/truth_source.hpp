@@ -40,8 +40,7 @@ class TruthSource {
   /// What the data set itself calls a label ("trunk"); empty with truth files, and for a label without meaning.
   std::string nameOfLabel(std::uint32_t label) const;
   /// What a label map says of classes that can match no answer, because `catalogue` does not know them or knows them as
-  /// something else: one sentence each. A truth may have classes of its own. Throws InputError for a class in
-  /// `counts_as` that is unknown, and near to a known one.
+  /// something else: one sentence each. A truth may have classes of its own.
   std::vector<std::string> doubtfulClasses(const rules::ClassCatalogue& catalogue) const;
   /// Instances that count neither way, sorted.
   const std::vector<std::int32_t>& ambiguous() const { return ambiguous_; }
