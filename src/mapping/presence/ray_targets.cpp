@@ -24,7 +24,7 @@ constexpr std::size_t kMaxInnerPlaces = 512;
 }  // namespace
 
 perception::Place placeOf(const perception::SceneCluxels& cluxels, std::uint32_t cluxel,
-                          const std::function<bool(std::uint32_t)>& like) {
+                          const std::function<bool(std::uint32_t)>& is_of_same_thing) {
   Eigen::AlignedBox3d box;
   const auto extend = [&](std::uint32_t c) {
     box.extend(cluxels.low_corner[c]);
@@ -32,7 +32,7 @@ perception::Place placeOf(const perception::SceneCluxels& cluxels, std::uint32_t
   };
   extend(cluxel);
   for (const std::uint32_t other : cluxels.neighbours(cluxel))
-    if (like(other)) extend(other);
+    if (is_of_same_thing(other)) extend(other);
   const Eigen::Vector3d& at = cluxels.center[cluxel];
   return {at, (box.min() - at).cast<float>(), (box.max() - at).cast<float>()};
 }

@@ -24,9 +24,9 @@ struct RayTarget {
   std::vector<Eigen::Vector3d> inner_places;  ///< of a barrier: placesWithin(); none of others
 };
 
-/// The place of a cluxel, with the extent of it and of those that intersect it and are `like` it.
+/// The place of a cluxel, with the extent of it and of those that intersect it and are of the same thing.
 perception::Place placeOf(const perception::SceneCluxels& cluxels, std::uint32_t cluxel,
-                          const std::function<bool(std::uint32_t)>& like);
+                          const std::function<bool(std::uint32_t)>& is_of_same_thing);
 
 /// Up to 256 places on an object, at least 0.3 m above the ground where it has such; none of ground.
 std::vector<perception::Place> placesOn(const perception::Scene& scene, const rules::SemanticObject& object);
