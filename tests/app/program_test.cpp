@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The program as its users run it: exit codes, data on stdout, and messages of errors.
+#include <fcntl.h>
+
 #include <nlohmann/json.hpp>
 
 #include "app/program_fixture.hpp"
+#include "rdf/file/file_guards.hpp"
+#include "rdf/holes.hpp"
 
 namespace cluxel::app {
 
@@ -32,6 +36,21 @@ TEST_F(Program, BuildsAMapAndTellsSoInJson) {
   ASSERT_FALSE(clouds.empty());
   EXPECT_EQ(clouds[0].at("T_map_sensor")[3], Json({0.0, 0.0, 0.0, 1.0}));
   EXPECT_NE(run("info " + path("map.clx").string() + " --clouds").out.find("sensor at "), std::string::npos);
+}
+
+/// A lock file that is a link is not written, so that the map is read from a copy in the temporary folder.
+TEST_F(Program, TellsWhatTheNamedMapTakesOnTheDiskWhenItReadsACopy) {
+  const fs::path map = path("read_from_a_copy.clx");
+  fs::copy_file(path("map.clx"), map);
+  fs::create_symlink(path("three.ttl"), map.string() + "-lock");
+  {
+    const Descriptor file(::open(map.c_str(), O_RDWR | O_CLOEXEC));  // room behind the end, which no copy has
+    if (::fallocate(file.get(), FALLOC_FL_KEEP_SIZE, static_cast<off_t>(fs::file_size(map)), 8 << 20) != 0)
+      GTEST_SKIP() << "the file system reserves no room";
+  }
+  const Outcome info = run("info " + map.string() + " --layers --json");
+  ASSERT_EQ(info.code, 0) << info.err;
+  EXPECT_EQ(Json::parse(info.out).at("disk_bytes"), diskBytes(map));
 }
 
 TEST_F(Program, AnswersWithExitCodeZeroAndData) {

@@ -6,6 +6,9 @@
 #include <filesystem>
 
 #include "rdf/file/map_replacement.hpp"
+#include "rdf/file/private_copy.hpp"
+#include "rdf/file/space/free_pages.hpp"
+#include "rdf/holes.hpp"
 #include "rdf/map_file_fixture.hpp"
 #include "rdf/store/quad_store.hpp"
 
@@ -204,6 +207,34 @@ TEST_F(SharedMap, AForeignLockFileIsNamedToTheOwnerWhoWantsToWrite) {
                          : 1;
             }),
             0);
+}
+
+/// The temporary folder often has less room than the map's.
+TEST_F(SharedMap, ACopyTakesNoMoreRoomThanTheMap) {
+  if (!hasHoles(folder_.path()) || !hasHoles(fs::temp_directory_path())) GTEST_SKIP() << "no holes here";
+  {
+    const auto owner = create();
+    put(*owner, "long", std::string(8'000'000, 'a'));
+    putGeneration(*owner, 1);
+    put(*owner, "long", "b");
+    ASSERT_GT(releaseFreePages(*owner), 7'000'000U);
+  }
+  const Descriptor map(::open(file_.c_str(), O_RDONLY | O_CLOEXEC));
+  PrivateCopy copy(file_, map.get());
+  EXPECT_EQ(fs::file_size(copy.file()), fs::file_size(file_));
+  EXPECT_LT(diskBytes(copy.file()), diskBytes(file_) + 500'000);
+  const ReadTransaction transaction = Environment::open(copy.file(), OpenMode::ReadOnly)->read();
+  EXPECT_EQ(readAll(transaction), 0);
+  EXPECT_EQ(transaction.block("t", "long"), "b");
+}
+
+/// The end of a file may be a hole, too.
+TEST_F(SharedMap, ACopyIsAsLongAsTheMap) {
+  putGeneration(*create(), 1);
+  fs::resize_file(file_, fs::file_size(file_) + 3'000'000);
+  const Descriptor map(::open(file_.c_str(), O_RDONLY | O_CLOEXEC));
+  PrivateCopy copy(file_, map.get());
+  EXPECT_EQ(fs::file_size(copy.file()), fs::file_size(file_));
 }
 
 TEST_F(SharedMap, ACopyServesTwiceWhileThereIsNoOtherCommit) {

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // `cluxel info`: the contents of scans or of a map.
+#include <sys/stat.h>
+
 #include <algorithm>
+#include <cerrno>
+#include <system_error>
 
 #include "app/command.hpp"
 #include "app/map_condition.hpp"
@@ -155,9 +159,15 @@ void printCloud(const mapping::Cloud& cloud) {
   std::printf("%s%s\n", cloud.time_s ? "  " : "", cloud.time_s ? dateTimeText(*cloud.time_s).c_str() : "");
 }
 
-/// Free pages may be holes, which take no room.
-std::uint64_t diskBytesOf(const mapping::MapReader& map) {
-  return rdf::freeSpaceOf(map.transaction()).disk_bytes;
+/// What the named file takes on the disk, without its holes. The reader may read a private copy of it.
+std::uint64_t diskBytesOf(const fs::path& map) {
+  constexpr std::uint64_t kBlock = 512;  // of st_blocks, on every file system
+  struct stat status {};
+  if (::stat(map.c_str(), &status) != 0)
+    throw Error(ErrorKind::StoreUnavailable, map.string() + ": cannot be examined (" +
+                                                 std::generic_category().message(errno) +
+                                                 "); check that it is still there");
+  return static_cast<std::uint64_t>(status.st_blocks) * kBlock;
 }
 
 Json layersJson(const std::vector<rdf::LayerSize>& layers) {
@@ -244,7 +254,7 @@ ExitCode infoOfMap(const InfoOptions& options, const fs::path& file, const Sessi
     for (const auto& [name, count] : summary.objects_by_class) std::printf("  %-14s %zu\n", name.c_str(), count);
     if (options.clouds)
       for (const mapping::Cloud& cloud : map.clouds()) printCloud(cloud);
-    if (options.layers) printLayers(map.layers(), diskBytesOf(map), summary.points);
+    if (options.layers) printLayers(map.layers(), diskBytesOf(file), summary.points);
     if (!inputs.crs.empty()) std::printf("coordinate system: %s\n", inputs.crs.c_str());
     std::printf("built with %s\n", describeFiles(inputs).c_str());
     return ExitCode::Done;
@@ -256,7 +266,7 @@ ExitCode infoOfMap(const InfoOptions& options, const fs::path& file, const Sessi
   if (options.clouds) json["cloud_list"] = cloudsJson(map.clouds());
   if (options.layers) {
     json["layers"] = layersJson(map.layers());
-    json["disk_bytes"] = diskBytesOf(map);
+    json["disk_bytes"] = diskBytesOf(file);
   }
   if (!inputs.crs.empty()) json["crs"] = inputs.crs;
   json["input_files"] = inputFilesJson(inputs);

@@ -5,11 +5,14 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdint>
 #include <cstdlib>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -32,11 +35,27 @@ namespace {
                   "); set TMPDIR to a folder with room, or ask for the right to write " + map.string() + "-lock");
 }
 
-/// Copies all bytes; errno value, or 0.
-int copyBytes(int from, int to) {
+/// A stretch of a file; `end` may lie behind the end of the file.
+struct Stretch {
+  off_t begin = 0, end = 0;
+};
+
+/// The next stretch from `at` on that is no hole; empty when only a hole follows. All that follows, where the file
+/// system does not tell.
+Stretch nextData(int file, off_t at) {
+  const off_t begin = ::lseek(file, at, SEEK_DATA);
+  if (begin < 0 && errno == ENXIO) return {at, at};
+  const off_t end = begin < 0 ? -1 : ::lseek(file, begin, SEEK_HOLE);
+  if (end > begin) return {begin, end};
+  return {at, std::numeric_limits<off_t>::max()};
+}
+
+/// Copies a stretch, at most to the end of the file; errno value, or 0.
+int copyStretch(int from, int to, const Stretch& stretch) {
   std::vector<char> buffer(std::size_t{1} << 20U);
-  for (off_t at = 0;;) {
-    const ssize_t count = ::pread(from, buffer.data(), buffer.size(), at);
+  for (off_t at = stretch.begin; at < stretch.end;) {
+    const auto room = std::min(static_cast<off_t>(buffer.size()), stretch.end - at);
+    const ssize_t count = ::pread(from, buffer.data(), static_cast<std::size_t>(room), at);
     if (count == 0) return 0;
     if (count < 0 && errno == EINTR) continue;
     if (count < 0) return errno;
@@ -48,17 +67,25 @@ int copyBytes(int from, int to) {
     }
     at += count;
   }
+  return 0;
 }
 
-/// Makes `copy` hold the bytes of the map alone.
+/// Makes `copy` as long as the map, with its bytes alone. Holes stay holes, so that the temporary folder needs only the
+/// room that the map takes on the disk.
 int copyAnew(int map, int copy) {
   if (::ftruncate(copy, 0) != 0) return errno;
-  return copyBytes(map, copy);
+  for (Stretch data = nextData(map, 0); data.begin < data.end; data = nextData(map, data.end)) {
+    if (const int code = copyStretch(map, copy, data); code != 0) return code;
+    if (data.end == std::numeric_limits<off_t>::max()) break;
+  }
+  struct stat status {};
+  return ::fstat(map, &status) == 0 && ::ftruncate(copy, status.st_size) == 0 ? 0 : errno;
 }
 
-/// Copies while another process may write; nothing when it has committed meanwhile. LMDB writes no page that belongs to
-/// the newest commit or to the one before, so that the pages of a commit stay until another two have followed. A commit
-/// reaches the meta pages last.
+/// Copies while another process may write; nothing when it has committed meanwhile. The pages of the newest commit
+/// stay until the next one: LMDB writes to none of them, and only pages that the newest commit does not use become
+/// holes. After the next commit they may be gone at once. So the commit is compared again at the end. A commit reaches
+/// the meta pages last.
 std::optional<int> copyBesideWriter(int map, int copy, const fs::path& file) {
   const std::uint64_t commit = readMapFileHead(map, file).transaction;
   if (const int code = copyAnew(map, copy); code != 0) return code;
