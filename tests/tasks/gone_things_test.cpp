@@ -114,6 +114,30 @@ TEST_F(GoneThings, LeaveNoRowOfTwoInInventories) {
   EXPECT_THAT(compared.notes, testing::IsSupersetOf(left_out));
 }
 
+/// Rules and updates may state anything of a thing; that it is gone only rays tell.
+TEST_F(GoneThings, AreThoseThatTheMapObserved) {
+  const auto there = std::find_if(map->objects().begin(), map->objects().end(), [&](const auto& object) {
+    return rdf::iriOfObject(object.id) != gone && object.class_iri == rdf::vocabulary::clx("Vehicle");
+  });
+  ASSERT_NE(there, map->objects().end());
+  const std::string standing = rdf::iriOfObject(there->id);
+  const auto file = folder->path() / "stated.clx";
+  std::filesystem::copy_file(folder->path() / "map.clx", file);
+  {
+    rdf::WriteTransaction transaction = rdf::Environment::open(file, rdf::OpenMode::ReadWrite)->write();
+    rdf::QuadWriter writer(transaction);
+    for (const std::string_view graph : {rdf::vocabulary::kGraphInferred, std::string_view("https://example.org/more")})
+      writer.add({Term::iri(standing), Term::iri(rdf::vocabulary::clx("seenThrough")),
+                  Term::literal(gone_at, "http://www.w3.org/2001/XMLSchema#dateTime"), Term::iri(std::string(graph))});
+    writer.flush();
+    transaction.commit();
+  }
+  const mapping::MapReader stated(file);
+  EXPECT_EQ(goneAmong(stated), goneAmong(*map));
+  EXPECT_EQ(seenThrough(stated.quads(), standing), std::nullopt);
+  EXPECT_EQ(seenThrough(stated.quads(), gone), gone_at);
+}
+
 TEST_F(GoneThings, AreMarkedInFootprintsAndExplanations) {
   std::string text;
   exportMap(

@@ -10,6 +10,7 @@
 #include "rdf/ontology/ontology.hpp"
 #include "rdf/vocabulary.hpp"
 #include "tasks/campus_map_fixture.hpp"
+#include "tasks/gone_things.hpp"
 #include "tasks/search/search_field.hpp"
 #include "tasks/search/search_tour.hpp"
 #include "tasks/ways/class_cells.hpp"

@@ -16,6 +16,7 @@
 #include "rdf/vocabulary.hpp"
 #include "tasks/ask/task_table.hpp"
 #include "tasks/changes/site_changes.hpp"
+#include "tasks/gone_things.hpp"
 #include "tasks/search/next_view.hpp"
 #include "tasks/ways/way_report.hpp"
 

@@ -15,6 +15,7 @@
 #include "rdf/map_iris.hpp"
 #include "rdf/vocabulary.hpp"
 #include "sparql/query_engine.hpp"
+#include "tasks/gone_things.hpp"
 #include "tasks/ways/route.hpp"
 
 namespace cluxel::tasks {

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <tuple>
 
+#include "tasks/gone_things.hpp"
 #include "tasks/search/search_field.hpp"
-#include "tasks/ways/route.hpp"
 
 namespace cluxel::tasks {
 

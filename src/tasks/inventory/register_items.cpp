@@ -9,8 +9,8 @@
 #include "rdf/map_iris.hpp"
 #include "rdf/vocabulary.hpp"
 #include "sparql/query_engine.hpp"
+#include "tasks/gone_things.hpp"
 #include "tasks/inventory/register.hpp"
-#include "tasks/ways/route.hpp"
 
 namespace cluxel::tasks {
 

@@ -15,6 +15,7 @@
 #include "rdf/vocabulary.hpp"
 #include "sparql/query_engine.hpp"
 #include "tasks/finite_number.hpp"
+#include "tasks/gone_things.hpp"
 #include "tasks/query_source.hpp"
 #include "tasks/search/search_tour.hpp"
 

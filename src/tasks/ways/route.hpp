@@ -21,8 +21,6 @@ struct WayRequest {
   std::string near;                  ///< the way should stay near things, places or ways of this class; empty: none
 };
 
-/// Per object: whether later scans saw through its place (clx:seenThrough).
-std::vector<bool> goneAmong(const mapping::MapReader& map);
 /// Per object: whether the request leaves it out. Throws as passableIn().
 std::vector<bool> leftOut(const mapping::MapReader& map, const WayRequest& request);
 

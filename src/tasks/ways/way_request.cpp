@@ -10,6 +10,7 @@
 #include "rdf/ontology/ontology.hpp"
 #include "rdf/vocabulary.hpp"
 #include "tasks/finite_number.hpp"
+#include "tasks/gone_things.hpp"
 #include "tasks/ways/class_cells.hpp"
 #include "tasks/ways/route.hpp"
 
@@ -112,20 +113,6 @@ std::string classNamed(const rdf::OntologyView& ontology, const std::string& wri
   const std::string hint = suggestion(local, known);
   throw Error(ErrorKind::NotFound,
               "the map's ontology has no class '" + std::string(name) + "'" + (hint.empty() ? "" : "; " + hint));
-}
-
-std::vector<bool> goneAmong(const mapping::MapReader& map) {
-  std::vector<bool> is_gone(map.objects().size(), false);
-  const rdf::QuadReader& quads = map.quads();
-  rdf::QuadPattern pattern;
-  pattern.p = quads.idOf(Term::iri(rdf::vocabulary::clx("seenThrough")));
-  if (!pattern.p) return is_gone;
-  for (std::size_t i = 0; i < map.objects().size(); ++i) {
-    pattern.s = quads.idOf(Term::iri(rdf::iriOfObject(map.objects()[i].id)));
-    rdf::QuadIds quad;
-    is_gone[i] = pattern.s && quads.scan(pattern).next(quad);
-  }
-  return is_gone;
 }
 
 std::vector<bool> leftOut(const mapping::MapReader& map, const WayRequest& request) {
