@@ -112,6 +112,12 @@ TEST_F(GoneThings, LeaveNoRowOfTwoInInventories) {
   const TaskAnswer compared = registerAnswer(*map, rows, {}, {});
   EXPECT_TRUE(compared.rows.empty());
   EXPECT_THAT(compared.notes, testing::IsSupersetOf(left_out));
+  EXPECT_EQ(inventoryOf(*map, rows).rows_left_out, 1U);
+  rows.with_rows = false;
+  EXPECT_EQ(inventoryOf(*map, rows).rows_left_out, 0U);
+  const std::vector<RegisterEntry> entries{
+      {.id = "a", .class_iri = rdf::vocabulary::clx("ParkingRow"), .height_m = {}}};
+  EXPECT_EQ(registerItems(*map, rows, entries).rows_left_out, 1U) << "the rows that entries mean";
 }
 
 /// Rules and updates may state anything of a thing; that it is gone only rays tell.

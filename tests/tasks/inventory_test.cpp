@@ -55,7 +55,7 @@ double medianOfErrors(std::vector<double> values) {
 }
 
 TEST(QuestionsOfACampus, TheInventoryHasTheSizesOfTheGenerator) {
-  const std::vector<InventoryItem> items = inventoryOf(CampusMap::shared().map(), {});
+  const std::vector<InventoryItem> items = inventoryOf(CampusMap::shared().map(), {}).items;
   const std::map<std::string, std::size_t> least_found{{"StreetSign", 4}, {"StreetLamp", 5}, {"Tree", 12}};
   for (const auto& [kind, least] : least_found) {
     const SizeErrors errors = errorsOf(kind, items);
@@ -71,7 +71,7 @@ TEST(QuestionsOfACampus, TheInventoryHasTheSizesOfTheGenerator) {
 
 TEST(QuestionsOfACampus, TheInventoryHasTheWidthsOfSidewalks) {
   InventoryParams params{.classes = {}, .with_rows = false};
-  const std::vector<InventoryItem> items = inventoryOf(CampusMap::shared().map(), params);
+  const std::vector<InventoryItem> items = inventoryOf(CampusMap::shared().map(), params).items;
   constexpr double walk_m = 6.5 - 4.15;  // of the generator: from the kerb's stone to the outer edge
   double length_m = 0;
   for (const InventoryItem& item : items) {
@@ -86,7 +86,7 @@ TEST(QuestionsOfACampus, TheInventoryHasTheWidthsOfSidewalks) {
   }
   EXPECT_GT(length_m, 8);
   params.with_sidewalks = false;
-  EXPECT_TRUE(inventoryOf(CampusMap::shared().map(), params).empty());
+  EXPECT_TRUE(inventoryOf(CampusMap::shared().map(), params).items.empty());
 }
 
 TEST(QuestionsOfACampus, TheInventoryTellsWhichRulesOfPlacesAreMissing) {
@@ -133,7 +133,7 @@ TEST(QuestionsOfACampus, ARegisterOfTheMapItselfMatchesWhole) {
   const ScratchFolder folder;
   const std::filesystem::path file = folder.path() / "register.csv";
   std::vector<InventoryItem> items;
-  for (const InventoryItem& item : inventoryOf(map, {}))
+  for (const InventoryItem& item : inventoryOf(map, {}).items)
     if (!item.object.empty()) items.push_back(item);
   ASSERT_GE(items.size(), 10U);
   std::string text = "id,class,x,y,height\n";
@@ -146,7 +146,7 @@ TEST(QuestionsOfACampus, ARegisterOfTheMapItselfMatchesWhole) {
   writeFile(file, text);
   const auto entries = readRegister(file, map.inputs(), ontologyViewOf(map.quads()));
   ASSERT_EQ(entries.size(), items.size() + 1);
-  const auto things = registerItems(map, {.with_rows = false}, entries);
+  const auto things = registerItems(map, {.with_rows = false}, entries).items;
   ASSERT_EQ(things.size(), items.size());
   const auto rows = compareWith(entries, things, std::vector<bool>(entries.size(), false), {.within_m = 1});
   std::map<RegisterStatus, std::size_t> counts;
@@ -179,7 +179,7 @@ TEST(QuestionsOfACampus, EntriesOfClassesThatAreNotListedAreLookedForAll) {
   const MapReader& map = CampusMap::shared().map();
   std::string text = "class,x,y\n";
   std::size_t entries = 0;
-  for (const InventoryItem& item : inventoryOf(map, {.classes = {"Building", "Vehicle", "Barrier"}})) {
+  for (const InventoryItem& item : inventoryOf(map, {.classes = {"Building", "Vehicle", "Barrier"}}).items) {
     if (item.kind == "ParkingRow" || item.kind == "Sidewalk") continue;
     text += lineFor(item.kind, item.at), ++entries;
   }
@@ -204,7 +204,7 @@ TEST(QuestionsOfACampus, EntriesOfClassesThatAreNotListedAreLookedForAll) {
 TEST(QuestionsOfACampus, ARegisterWritesClassesAsOtherPlacesDo) {
   const MapReader& map = CampusMap::shared().map();
   const InventoryParams signs{.classes = {"StreetSign"}, .with_rows = false, .with_sidewalks = false};
-  const std::vector<InventoryItem> items = inventoryOf(map, signs);
+  const std::vector<InventoryItem> items = inventoryOf(map, signs).items;
   ASSERT_GE(items.size(), 4U);
   for (const std::string& written : {std::string("street sign"), std::string("clx:StreetSign"),
                                      vocabulary::clx("StreetSign"), std::string("StreetFurniture")}) {

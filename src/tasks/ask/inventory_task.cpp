@@ -201,13 +201,14 @@ std::optional<std::string> noteOfMissingRules(const mapping::MapReader& map, con
 }
 
 /// Tells how much is left out, because later scans show it to be gone.
-void addNotesOfGone(const mapping::MapReader& map, bool with_rows, TaskAnswer& answer) {
+void addNotesOfGone(const mapping::MapReader& map, std::size_t rows_left_out, TaskAnswer& answer) {
   const std::vector<bool> is_gone = goneAmong(map);
   if (const auto gone = std::count(is_gone.begin(), is_gone.end(), true); gone > 0)
     answer.notes.push_back("without " + std::to_string(gone) +
                            " objects of all classes that later scans show to be gone");
-  if (const std::size_t broken = with_rows ? brokenParkingRows(map) : 0; broken > 0)
-    answer.notes.push_back("without " + std::to_string(broken) +
+  static_assert(kFewestInBrokenRow == 3, "the note names the number");
+  if (rows_left_out > 0)
+    answer.notes.push_back("without " + std::to_string(rows_left_out) +
                            " parking rows of which fewer than three vehicles are left");
 }
 
@@ -227,7 +228,8 @@ TaskAnswer inventoryAnswer(const mapping::MapReader& map, const InventoryParams&
                            const std::vector<Street>& streets) {
   TaskAnswer answer{inventoryColumns(), {}};
   std::map<std::string, std::size_t> counts;
-  for (const InventoryItem& item : inventoryOf(map, params, streets)) {
+  const Inventory inventory = inventoryOf(map, params, streets);
+  for (const InventoryItem& item : inventory.items) {
     ++counts[item.kind];
     const TaskCell count = item.kind == "ParkingRow" ? TaskCell(static_cast<double>(item.count)) : TaskCell();
     answer.rows.push_back({{item.kind, namedCell(item.object), namedCell(item.street), item.at.x(), item.at.y(),
@@ -239,13 +241,14 @@ TaskAnswer inventoryAnswer(const mapping::MapReader& map, const InventoryParams&
   for (const auto& [kind, count] : counts) note += (note.empty() ? "" : ", ") + std::to_string(count) + " " + kind;
   if (!note.empty()) answer.notes.push_back(note);
   if (const auto missing = noteOfMissingRules(map, params)) answer.notes.push_back(*missing);
-  addNotesOfGone(map, params.with_rows, answer);
+  addNotesOfGone(map, inventory.rows_left_out, answer);
   return answer;
 }
 
 TaskAnswer registerAnswer(const mapping::MapReader& map, const InventoryParams& params,
                           const std::vector<RegisterEntry>& entries, const RegisterParams& comparison) {
-  const std::vector<RegisterItem> items = registerItems(map, params, entries);
+  const RegisterItems things = registerItems(map, params, entries);
+  const std::vector<RegisterItem>& items = things.items;
   TaskAnswer answer{{{"status", "text", "matched, missing in the map, not observed, not in the register"},
                      {"entry", "text", "id in the register"},
                      {"object", "IRI", "in the map"},
@@ -274,7 +277,7 @@ TaskAnswer registerAnswer(const mapping::MapReader& map, const InventoryParams& 
   answer.notes.push_back(note);
   const InventoryParams places = placesAmong(entries);
   if (const auto missing = noteOfMissingRules(map, places)) answer.notes.push_back(*missing);
-  addNotesOfGone(map, params.with_rows || places.with_rows, answer);
+  addNotesOfGone(map, things.rows_left_out, answer);
   return answer;
 }
 

@@ -106,15 +106,8 @@ InventoryItem rowOf(std::vector<ParkedVehicle> vehicles) {
   return row;
 }
 
-struct ParkingRows {
-  std::vector<InventoryItem> standing;
-  std::size_t left_out = 0;  ///< rows of which too few vehicles are left
-};
-
-/// The rows that the map's rules derived, and what stands in them. A row that lost vehicles is one as long as it would
-/// be made of the others.
-ParkingRows parkingRows(const mapping::MapReader& map) {
-  constexpr std::size_t kFewest = 3;  // as the shipped rule asks for
+/// The rows that the map's rules derived, and what stands in them.
+Inventory parkingRows(const mapping::MapReader& map) {
   std::map<std::string, const rules::SemanticObject*> object_named;
   const std::vector<bool> is_gone = goneAmong(map);
   for (std::size_t i = 0; i < is_gone.size(); ++i)
@@ -137,12 +130,12 @@ ParkingRows parkingRows(const mapping::MapReader& map) {
     const auto box = mapping::geometryOf(map.scene().cluxels, mapping::cluxelsOf(*known->second)).box;
     row.push_back({box.center.head<2>(), box.yaw_rad, box.size.x(), box.size.y()});
   }
-  ParkingRows found;
+  Inventory found;
   for (auto& [iri, vehicles] : rows) {
-    if (lost_some.contains(iri) && vehicles.size() < kFewest)
-      ++found.left_out;
+    if (lost_some.contains(iri) && vehicles.size() < kFewestInBrokenRow)
+      ++found.rows_left_out;
     else
-      found.standing.push_back(rowOf(std::move(vehicles)));
+      found.items.push_back(rowOf(std::move(vehicles)));
   }
   return found;
 }
@@ -208,12 +201,8 @@ InventoryItem measuredItem(const mapping::MapReader& map, const rules::SemanticO
   return item;
 }
 
-std::size_t brokenParkingRows(const mapping::MapReader& map) {
-  return parkingRows(map).left_out;
-}
-
-std::vector<InventoryItem> inventoryOf(const mapping::MapReader& map, const InventoryParams& params,
-                                       const std::vector<Street>& streets) {
+Inventory inventoryOf(const mapping::MapReader& map, const InventoryParams& params,
+                      const std::vector<Street>& streets) {
   const rdf::OntologyView ontology = ontologyViewOf(map.quads());
   std::vector<std::string> wanted;
   for (const std::string& name : params.classes) wanted.push_back(classNamed(ontology, name));
@@ -226,8 +215,9 @@ std::vector<InventoryItem> inventoryOf(const mapping::MapReader& map, const Inve
     if (is_wanted && !is_gone[i]) items.push_back(measuredItem(map, object));
   }
   std::stable_sort(items.begin(), items.end(), [](const auto& a, const auto& b) { return a.kind < b.kind; });
-  std::vector<InventoryItem> derived;
-  if (params.with_rows) derived = parkingRows(map).standing;
+  Inventory rows;
+  if (params.with_rows) rows = parkingRows(map);
+  std::vector<InventoryItem> derived = std::move(rows.items);
   if (params.with_sidewalks) {
     const std::vector<InventoryItem> sidewalks = sidewalksOf(map);
     derived.insert(derived.end(), sidewalks.begin(), sidewalks.end());
@@ -237,7 +227,7 @@ std::vector<InventoryItem> inventoryOf(const mapping::MapReader& map, const Inve
   });
   items.insert(items.end(), derived.begin(), derived.end());
   for (InventoryItem& item : items) item.street = streetOf(item.at, streets, params.street_within_m);
-  return items;
+  return {std::move(items), rows.rows_left_out};
 }
 
 }  // namespace cluxel::tasks

@@ -48,11 +48,17 @@ InventoryParams inventoryOfKinds(const rdf::OntologyView& ontology, const std::v
 
 /// One object, without its street.
 InventoryItem measuredItem(const mapping::MapReader& map, const rules::SemanticObject& object);
-/// How many parking rows inventoryOf() leaves out, because too few of their vehicles are left.
-std::size_t brokenParkingRows(const mapping::MapReader& map);
+/// A parking row that lost vehicles is one as long as so many are left, whatever number the map's rule asks for: a rule
+/// does not tell that number.
+inline constexpr std::size_t kFewestInBrokenRow = 3;
+
+struct Inventory {
+  std::vector<InventoryItem> items;
+  std::size_t rows_left_out = 0;  ///< parking rows that lost vehicles, and have fewer than kFewestInBrokenRow left
+};
 /// Without objects that later scans show to be gone. Objects first, by class and IRI, then rows and sidewalks by place.
 /// Throws Error (NotFound) for an unknown class.
-std::vector<InventoryItem> inventoryOf(const mapping::MapReader& map, const InventoryParams& params,
-                                       const std::vector<Street>& streets = {});
+Inventory inventoryOf(const mapping::MapReader& map, const InventoryParams& params,
+                      const std::vector<Street>& streets = {});
 
 }  // namespace cluxel::tasks

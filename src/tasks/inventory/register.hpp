@@ -56,10 +56,14 @@ struct RegisterItem {
   std::set<std::string> classes = {};  ///< those classes of entries that it is of
 };
 
+struct RegisterItems {
+  std::vector<RegisterItem> items;
+  std::size_t rows_left_out = 0;  ///< as Inventory's
+};
 /// The inventory, then everything else in the map that is of a class of an entry: objects, their parts, and what rules
 /// derived. What rules call an object counts beside its class.
-std::vector<RegisterItem> registerItems(const mapping::MapReader& map, const InventoryParams& params,
-                                        const std::vector<RegisterEntry>& entries);
+RegisterItems registerItems(const mapping::MapReader& map, const InventoryParams& params,
+                            const std::vector<RegisterEntry>& entries);
 
 /// Pairs of an entry and a thing of its class or of a subclass, each once: those of the very class first, then nearest
 /// first. Then what is left of the entries and of the listed things. In the order of the entries, then of the items.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Collects the things of a map that a register is compared with.
+#include <algorithm>
 #include <map>
 #include <set>
 #include <tuple>
@@ -79,8 +80,8 @@ std::set<std::string> namesOfGone(const mapping::MapReader& map, const std::vect
 
 }  // namespace
 
-std::vector<RegisterItem> registerItems(const mapping::MapReader& map, const InventoryParams& params,
-                                        const std::vector<RegisterEntry>& entries) {
+RegisterItems registerItems(const mapping::MapReader& map, const InventoryParams& params,
+                            const std::vector<RegisterEntry>& entries) {
   const rdf::OntologyView ontology = ontologyViewOf(map.quads());
   std::map<std::string, std::size_t> object_named;
   const std::vector<bool> is_gone = goneAmong(map);
@@ -89,12 +90,16 @@ std::vector<RegisterItem> registerItems(const mapping::MapReader& map, const Inv
   for (const RegisterEntry& entry : entries) classes.insert(entry.class_iri);
   const std::set<std::string> gone = namesOfGone(map, is_gone);
   RegisterThings things;
-  for (InventoryItem& item : inventoryOf(map, params)) things.add(std::move(item)).is_listed = true;
+  Inventory listed = inventoryOf(map, params);
+  for (InventoryItem& item : listed.items) things.add(std::move(item)).is_listed = true;
+  std::size_t rows_left_out = listed.rows_left_out;
   for (const std::string& class_iri : classes) {
     InventoryParams of_class{.classes = {class_iri}};
     of_class.with_rows = ontology.isA(rdf::vocabulary::clx("ParkingRow"), class_iri);
     of_class.with_sidewalks = ontology.isA(rdf::vocabulary::clx("Sidewalk"), class_iri);
-    for (InventoryItem& item : inventoryOf(map, of_class)) things.add(std::move(item)).classes.insert(class_iri);
+    Inventory meant = inventoryOf(map, of_class);
+    for (InventoryItem& item : meant.items) things.add(std::move(item)).classes.insert(class_iri);
+    rows_left_out = std::max(rows_left_out, meant.rows_left_out);  // those of one class are among those of another
     for (InventoryItem& item : thingsTyped(map, class_iri)) {
       const auto object = object_named.find(item.object);
       if (gone.contains(item.object)) continue;
@@ -105,7 +110,7 @@ std::vector<RegisterItem> registerItems(const mapping::MapReader& map, const Inv
       known->classes.insert(class_iri);
     }
   }
-  return things.take();
+  return {things.take(), rows_left_out};
 }
 
 }  // namespace cluxel::tasks
