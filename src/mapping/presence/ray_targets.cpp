@@ -23,7 +23,7 @@ constexpr std::size_t kMaxInnerPlaces = 512;
 
 }  // namespace
 
-perception::Place placeOf(const perception::SceneCluxels& cluxels, std::uint32_t cluxel,
+perception::Place rayPlaceOf(const perception::SceneCluxels& cluxels, std::uint32_t cluxel,
                           const std::function<bool(std::uint32_t)>& is_of_same_thing) {
   Eigen::AlignedBox3d box;
   const auto extend = [&](std::uint32_t c) {
@@ -48,7 +48,7 @@ std::vector<perception::Place> placesOn(const perception::Scene& scene, const ru
   const auto is_member = [&all](std::uint32_t c) { return std::binary_search(all.begin(), all.end(), c); };
   std::vector<perception::Place> places;
   const std::size_t step = (members.size() + perception::kMaxPlaces - 1) / perception::kMaxPlaces;
-  for (std::size_t i = 0; i < members.size(); i += step) places.push_back(placeOf(cluxels, members[i], is_member));
+  for (std::size_t i = 0; i < members.size(); i += step) places.push_back(rayPlaceOf(cluxels, members[i], is_member));
   return places;
 }
 
