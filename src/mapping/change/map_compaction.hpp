@@ -38,7 +38,8 @@ Compaction compactIfSparse(const std::filesystem::path& map, const rdf::FreeSpac
                            double max_free_share);
 
 /// After a change: compacts the map when more than kMaxFreeShareOfChanged would be freed. Else, when its free pages
-/// take more than kMaxFreeShareOfDisk of what it takes on the disk, they become holes in the file, where the file system can.
+/// take more than kMaxFreeShareOfDisk of what it takes on the disk, they become holes in the file, where the file
+/// system can.
 void freeSpaceOfChange(const std::filesystem::path& map, ProgressSink& sink);
 /// The same when the free space is known.
 void freeSpaceOfChange(const std::filesystem::path& map, const rdf::FreeSpace& space, ProgressSink& sink);

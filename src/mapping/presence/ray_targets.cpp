@@ -24,7 +24,7 @@ constexpr std::size_t kMaxInnerPlaces = 512;
 }  // namespace
 
 perception::Place rayPlaceOf(const perception::SceneCluxels& cluxels, std::uint32_t cluxel,
-                          const std::function<bool(std::uint32_t)>& is_of_same_thing) {
+                             const std::function<bool(std::uint32_t)>& is_of_same_thing) {
   Eigen::AlignedBox3d box;
   const auto extend = [&](std::uint32_t c) {
     box.extend(cluxels.low_corner[c]);

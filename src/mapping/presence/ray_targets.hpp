@@ -26,7 +26,7 @@ struct RayTarget {
 
 /// The place of a cluxel, with the extent of it and of those that intersect it and are of the same thing.
 perception::Place rayPlaceOf(const perception::SceneCluxels& cluxels, std::uint32_t cluxel,
-                          const std::function<bool(std::uint32_t)>& is_of_same_thing);
+                             const std::function<bool(std::uint32_t)>& is_of_same_thing);
 
 /// Up to 256 places on an object, at least 0.3 m above the ground where it has such; none of ground.
 std::vector<perception::Place> placesOn(const perception::Scene& scene, const rules::SemanticObject& object);

@@ -40,7 +40,7 @@ void inPieces(std::size_t count, unsigned threads, const Work& work) {
 /// The place of a cluxel on the thing that it belongs to.
 perception::Place placeIn(const mapping::MapRegion& region, std::uint32_t cluxel) {
   return mapping::rayPlaceOf(region.scene.cluxels, cluxel,
-                          [&](std::uint32_t other) { return region.object[other] == region.object[cluxel]; });
+                             [&](std::uint32_t other) { return region.object[other] == region.object[cluxel]; });
 }
 
 /// What rays must tell before it is known whether a cluxel changed.
