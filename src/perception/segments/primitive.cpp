@@ -33,7 +33,7 @@ const std::array<AttributeInfo, kAttributeCount>& attributeInfos() {
       {A::Probability, "probability", "probability", D::Ratio, "mean probability of the label over its points"},
       {A::GroundContact, "ground_contact", "groundContact", D::Ratio,
        "share of its footprint cells whose lowest point is within 0.3 m of the ground"},
-      {A::ViewCount, "view_count", "viewCount", D::Count, "number of scans that saw it"},
+      {A::ViewCount, "view_count", "viewCount", D::Count, "number of scans with a point among its own"},
       {A::MeanIntensity, "mean_intensity", "meanIntensity", D::Ratio, "mean intensity of the returns, 0 without any"},
   }};
   return infos;
