@@ -74,7 +74,10 @@ TEST_F(GroundStatements, OfPointsThatAreGroundNowAreDormant) {
     const ChangeReport report = changeStatements(map(), {all, {}, ""}, {.max_window_share = window}, silence());
     EXPECT_TRUE(report.objects.isEmpty());
     EXPECT_EQ(groundCount(), 1U);
-    for (const KnownStatement& statement : known()) EXPECT_EQ(statement.effect, "dormant");
+    for (const KnownStatement& statement : known()) {
+      EXPECT_EQ(statement.effect, "dormant");
+      EXPECT_FALSE(statement.lacks_scans) << "its scan is there, but its points are ground";
+    }
     EXPECT_TRUE(canonicalText(map()) == fromScratch(2));
     std::vector<ContentHash> ids;
     for (const Statement& statement : all) ids.push_back(statement.id());

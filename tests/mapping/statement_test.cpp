@@ -178,16 +178,19 @@ TEST_F(Statements, LieDormantWhileTheirScansAreAwayAndWakeUp) {
   }
   const KnownStatement stated = only(map());
   EXPECT_EQ(stated.effect, "applied");
+  EXPECT_FALSE(stated.lacks_scans);
   const std::string before = canonicalText(map());
   const ScanId scan = stated.statement.points.begin()->first;
   const ChangeReport report = retractScans(map(), {scan}, {.max_window_share = 0}, silence());
   EXPECT_EQ(only(map()).effect, "dormant");
+  EXPECT_TRUE(only(map()).lacks_scans);
   for (const auto& outcomes : {report.statements, toldOutcomes(MapReader(map()).quads())})
     EXPECT_EQ(summaryOf(outcomes),
               "operator statements: 0 applied, 1 dormant until the scans that they are about are in the map again");
   const auto number = static_cast<std::size_t>(std::find(ids.begin(), ids.end(), scan) - ids.begin());
   extendMap(map(), posed({{number, 0}}), {}, silence());
   EXPECT_EQ(only(map()).effect, "applied");
+  EXPECT_FALSE(only(map()).lacks_scans);
   EXPECT_TRUE(canonicalText(map()) == before);
 }
 

@@ -14,6 +14,7 @@ using mapping::KnownStatement;
 
 std::string lineOfKnown(const KnownStatement& known) {
   std::string line = known.statement.id().hex() + "  " + textOf(known.statement) + "  " + known.effect;
+  if (known.lacks_scans) line += " until the scans that it is about are in the map again";
   const bool is_applied = known.effect == nameOf(mapping::StatementEffect::Applied);
   if (!known.object.empty())
     line += (is_applied ? " to object/" : ", about object/") + mapping::localName(known.object);
@@ -29,6 +30,7 @@ Json jsonOfKnown(const KnownStatement& known) {
   if (!known.object.empty()) entry["object"] = known.object;
   if (!known.rules_class.empty()) entry["rules_say"] = known.rules_class;
   entry["contradicts_rules"] = known.contradicts;
+  entry["lacks_scans"] = known.lacks_scans;
   if (!known.author.empty()) entry["author"] = known.author;
   if (!known.stated_at.empty()) entry["stated_at"] = known.stated_at;
   return entry;
@@ -36,8 +38,12 @@ Json jsonOfKnown(const KnownStatement& known) {
 
 KnownStatement withoutHistory(const mapping::StatementOutcome& outcome) {
   const std::string object = outcome.object ? rdf::iriOfObject(*outcome.object) : "";
-  return {
-      outcome.statement, std::string(nameOf(outcome.effect)), object, outcome.rules_class, outcome.contradicts, "", ""};
+  return {.statement = outcome.statement,
+          .effect = std::string(nameOf(outcome.effect)),
+          .object = object,
+          .rules_class = outcome.rules_class,
+          .contradicts = outcome.contradicts,
+          .lacks_scans = outcome.lacks_scans};
 }
 
 }  // namespace

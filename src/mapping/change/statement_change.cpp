@@ -75,7 +75,7 @@ RegionAnchor regionAnchor(const std::vector<Cloud>& clouds, const std::vector<Ei
 std::vector<KnownStatement> knownStatements(const rdf::QuadReader& quads) {
   std::vector<KnownStatement> all;
   for (const Statement& statement : storedStatements(quads)) {
-    KnownStatement known{statement, "", "", "", false, "", ""};
+    KnownStatement known{.statement = statement};
     const std::string iri = rdf::iriOfStatement(statement.id());
     for (const Quad& quad : quadsAbout(quads, iri, rdf::vocabulary::kGraphObserved)) {
       if (quad.predicate.text == clx("statementEffect")) known.effect = quad.object.text;
@@ -83,6 +83,7 @@ std::vector<KnownStatement> knownStatements(const rdf::QuadReader& quads) {
       if (quad.predicate.text == clx("rulesSay")) known.rules_class = quad.object.text;
       if (quad.predicate.text == clx("contradictsRules")) known.contradicts = quad.object.text == "true";
     }
+    known.lacks_scans = known.effect == nameOf(StatementEffect::Dormant) && lacksScans(quads, statement);
     const StatementRecord record = recordOf(quads, statement.id());
     known.author = record.author, known.stated_at = record.stated_at;
     all.push_back(std::move(known));

@@ -34,11 +34,12 @@ RegionAnchor regionAnchor(const std::vector<Cloud>& clouds, const std::vector<Ei
 /// A statement of a map with what is known of it.
 struct KnownStatement {
   Statement statement;
-  std::string effect;             ///< nameOf(StatementEffect)
-  std::string object;             ///< IRI of the object it applies to; empty when there is none
-  std::string rules_class;        ///< IRI of the class that the rules gave it
-  bool contradicts = false;       ///< the rules decided otherwise
-  std::string author, stated_at;  ///< from the history; may be empty
+  std::string effect = {};                  ///< nameOf(StatementEffect)
+  std::string object = {};                  ///< IRI of the object it applies to; empty when there is none
+  std::string rules_class = {};             ///< IRI of the class that the rules gave it
+  bool contradicts = false;                 ///< the rules decided otherwise
+  bool lacks_scans = false;                 ///< dormant because the map has none of the scans that it is anchored to
+  std::string author = {}, stated_at = {};  ///< from the history; may be empty
 };
 std::vector<KnownStatement> knownStatements(const rdf::QuadReader& quads);
 

@@ -49,6 +49,10 @@ bool isObserved(const rdf::QuadReader& quads, const scan::ScanId& scan) {
 
 }  // namespace
 
+bool lacksScans(const rdf::QuadReader& quads, const Statement& statement) {
+  return lacksScans(statement, [&](const scan::ScanId& scan) { return isObserved(quads, scan); });
+}
+
 std::vector<StatementOutcome> toldOutcomes(const rdf::QuadReader& quads) {
   std::vector<StatementOutcome> outcomes;
   for (const Statement& statement : storedStatements(quads)) {
@@ -68,8 +72,7 @@ std::vector<StatementOutcome> toldOutcomes(const rdf::QuadReader& quads) {
     if (const auto object = value("appliesTo")) outcome.object = hashIn(*object, "object");
     outcome.rules_class = value("rulesSay").value_or("");
     outcome.contradicts = value("contradictsRules") == "true";
-    outcome.lacks_scans = outcome.effect == StatementEffect::Dormant &&
-                          lacksScans(statement, [&](const scan::ScanId& scan) { return isObserved(quads, scan); });
+    outcome.lacks_scans = outcome.effect == StatementEffect::Dormant && lacksScans(quads, statement);
     outcomes.push_back(std::move(outcome));
   }
   return outcomes;

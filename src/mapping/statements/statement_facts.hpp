@@ -19,6 +19,8 @@ AppliedStatements appliedStatements(const rdf::ReadTransaction& transaction, Til
 /// Which object each statement applies to, what the rules say of it, and the stated properties of objects.
 void addStatementFacts(const std::vector<StatementOutcome>& outcomes, FactSink& facts);
 
+/// Whether the map has none of the scans that a statement is anchored to.
+bool lacksScans(const rdf::QuadReader& quads, const Statement& statement);
 /// What the facts of the map tell of all its statements.
 std::vector<StatementOutcome> toldOutcomes(const rdf::QuadReader& quads);
 
