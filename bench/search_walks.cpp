@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "rdf/ontology/ontology.hpp"
+#include "tasks/gone_things.hpp"
 #include "tasks/ways/way_search.hpp"
 
 namespace cluxel::bench {
