@@ -10,7 +10,6 @@
 #include "mapping/change/map_compaction.hpp"
 #include "mapping/small_campus.hpp"
 #include "rdf/file/space/layer_sizes.hpp"
-#include "rdf/holes.hpp"
 
 namespace cluxel::mapping {
 namespace {
@@ -48,31 +47,6 @@ TEST(CostBars, AChangeLeavesAQuarterOfTheFileFreeAtMost) {
     extendMap(map, scansOf({campus.files()[stop]}), {}, silence());
     EXPECT_LE(freeShare(map), kMaxFreeShareOfChanged);
   }
-}
-
-/// Three more campuses beside it make the change a small one, so that the map is not rewritten.
-TEST(CostBars, CompactGainsLessThanATwentiethOfTheDiskAfterAnExtension) {
-  const ScratchFolder folder;
-  if (!hasHoles(folder.path())) GTEST_SKIP() << "the file system has no holes";
-  std::deque<SmallCampus> campuses;
-  for (const unsigned seed : {8U, 9U, 10U, 11U})
-    campuses.emplace_back(CampusParams{.seed = seed, .stops = 4, .size_m = 60, .points_per_stop = 20'000});
-  std::vector<fs::path> files;
-  for (const SmallCampus& campus : campuses) files.insert(files.end(), campus.files().begin(), campus.files().end());
-  const ScanSet all = scansOf(files);
-  std::vector<PosedScan> scans;
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    scans.push_back({i, all.file(i).T_map_sensor});
-    scans.back().T_map_sensor.pretranslate(Eigen::Vector3d(256 * static_cast<double>(i / 4), 0, 0));
-  }
-  const ScanSet added = all.posed({scans[3]});
-  scans.erase(scans.begin() + 3);
-  const fs::path map = folder.path() / "map.clx", copy = folder.path() / "copy.clx";
-  buildMap(all.posed(scans), shippedInputs(), map, {}, silence());
-  extendMap(map, added, {}, silence());
-  EXPECT_LT(diskBytes(map) + 1'000'000, fs::file_size(map)) << "the map has no holes";
-  copyCompacted(map, copy);
-  EXPECT_GE(static_cast<double>(diskBytes(copy)), 0.95 * static_cast<double>(diskBytes(map)));
 }
 
 TEST(CostBarsOfOakland, AMapTakesNinetyBytesAPoint) {

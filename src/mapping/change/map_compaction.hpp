@@ -25,7 +25,7 @@ void copyCompacted(const std::filesystem::path& map, const std::filesystem::path
 inline constexpr double kMaxFreeShare = 0.05;
 /// After a change: the next change uses the free pages, and a rewrite after each would cost more than the change.
 inline constexpr double kMaxFreeShareOfChanged = 0.25;
-/// Of what the map takes on the disk, after a change. Half-filled pages of indexes take some 4 % more.
+/// Of what the map takes on the disk, after a change. Half-filled pages of indexes come on top.
 inline constexpr double kMaxFreeShareOfDisk = 0.01;
 
 /// Compacts a map when that frees more than this share of it, and more than a mebibyte. So the cost follows the
