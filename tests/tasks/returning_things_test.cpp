@@ -152,21 +152,6 @@ TEST(ReturningThings, ATimeUntilWhichThereIsTooLittleIsToldAsTheCause) {
   EXPECT_THAT(message({.since_s = noon_s, .until_s = noon_s + 60}), HasSubstr("and until 2023-11-15T10:14:20.000000Z"));
 }
 
-TEST(ReturningThings, OneRayThatPassesOnTheSameVisitDoesNotHideThatAThingLeft) {
-  const auto votes = [](double time_s, std::size_t hits, std::size_t seen_through) {
-    perception::ScanVotes scan;
-    scan.time_s = time_s;
-    for (std::size_t i = 0; i < hits; ++i) scan.hits.set(i);
-    for (std::size_t i = 0; i < seen_through; ++i) scan.seen_through.set(hits + i);
-    return scan;
-  };
-  const auto wasAway = [&](const std::vector<perception::ScanVotes>& history) {
-    return statesOf(0, history, 2 * kDay_s).was_away;
-  };
-  EXPECT_TRUE(wasAway({votes(0, 60, 0), votes(60, 0, 1), votes(kDay_s, 0, 50), votes(2 * kDay_s, 60, 0)}));
-  EXPECT_FALSE(wasAway({votes(0, 60, 0), votes(60, 0, 50), votes(2 * kDay_s, 60, 0)})) << "within one visit";
-}
-
 TEST(EdgesOfThings, ARoofThatALowerLaserSeesFromTheEdgeStays) {
   const Box car = boxFrom({2, 4, 0.25}, {6.2, 5.8, 1.4});
   BoxVisit high = visit({car}), low = high;

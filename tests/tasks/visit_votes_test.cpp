@@ -37,25 +37,25 @@ const Visits& threeVisits() {
 }
 
 VisitVotes votesOf(std::size_t places, const ScanNumbers& hits, const ScanNumbers& passed) {
-  VoteOfPlaces votes(threeVisits(), places);
+  PlaceVotes votes(threeVisits(), places);
   for (std::size_t i = 0; i < places; ++i) votes.addPlace(hits, passed);
   return votes.take();
 }
 
-TEST(VoteOfPlaces, TellsOnWhichVisitsAThingWasThere) {
+TEST(PlaceVotes, TellsOnWhichVisitsAThingWasThere) {
   EXPECT_THAT(visitsWithIt(votesOf(20, scans({0, 2}), scans({3}))), ElementsAre(0, 1));
   EXPECT_THAT(visitsWithoutIt(votesOf(20, scans({0, 2}), scans({3}))), ElementsAre(2));
   EXPECT_THAT(visitsWithIt(votesOf(20, scans({}), scans({3}))), IsEmpty());
   EXPECT_THAT(visitsWithoutIt(votesOf(20, scans({}), scans({3}))), IsEmpty()) << "it was never there";
 }
 
-TEST(VoteOfPlaces, AnotherScanOfTheVisitThatPassesDoesNotTellThatItLeft) {
+TEST(PlaceVotes, AnotherScanOfTheVisitThatPassesDoesNotTellThatItLeft) {
   EXPECT_FALSE(isAwayAtEnd(votesOf(20, scans({0}), scans({1}))));
   EXPECT_TRUE(isAwayAtEnd(votesOf(20, scans({0}), scans({1, 2}))));
   EXPECT_FALSE(isAwayAtEnd(votesOf(20, scans({0, 3}), scans({2})))) << "it came back";
 }
 
-TEST(VoteOfPlaces, TakesAnyNumberOfPlaces) {
+TEST(PlaceVotes, TakesAnyNumberOfPlaces) {
   for (const std::size_t places : {1U, 255U, 256U, 257U, 5000U}) {
     const VisitVotes votes = votesOf(places, scans({0}), scans({2}));
     ASSERT_THAT(votes.visits, ElementsAre(0, 1));
@@ -63,14 +63,25 @@ TEST(VoteOfPlaces, TakesAnyNumberOfPlaces) {
   }
 }
 
-TEST(ObjectStates, OneLaterScanTellsThatAllOfAThingIsGone) {
-  const auto vote = [](double time_s, std::size_t hits, std::size_t seen_through) {
-    perception::ScanVotes scan;
-    scan.time_s = time_s;
-    for (std::size_t i = 0; i < hits; ++i) scan.hits.set(i);
-    for (std::size_t i = 0; i < seen_through; ++i) scan.seen_through.set(hits + i);
-    return scan;
+/// A scan that hits the first places and sees through those after them.
+perception::ScanVotes vote(double time_s, std::size_t hits, std::size_t seen_through) {
+  perception::ScanVotes scan;
+  scan.time_s = time_s;
+  for (std::size_t i = 0; i < hits; ++i) scan.hits.set(i);
+  for (std::size_t i = 0; i < seen_through; ++i) scan.seen_through.set(hits + i);
+  return scan;
+}
+
+TEST(ObjectStates, OneRayThatPassesOnTheSameVisitDoesNotHideThatAThingLeft) {
+  constexpr double kDay_s = 86400;
+  const auto wasAway = [&](const std::vector<perception::ScanVotes>& history) {
+    return statesOf(0, history, 2 * kDay_s).was_away;
   };
+  EXPECT_TRUE(wasAway({vote(0, 60, 0), vote(60, 0, 1), vote(kDay_s, 0, 50), vote(2 * kDay_s, 60, 0)}));
+  EXPECT_FALSE(wasAway({vote(0, 60, 0), vote(60, 0, 50), vote(2 * kDay_s, 60, 0)})) << "within one visit";
+}
+
+TEST(ObjectStates, OneLaterScanTellsThatAllOfAThingIsGone) {
   const auto isAllGone = [&](std::size_t hits, std::size_t seen_through) {
     const std::vector<perception::ScanVotes> votes{vote(0, 100, 0), vote(4000, hits, seen_through)};
     return statesOf(0, votes, 4000).is_all_gone;

@@ -92,7 +92,7 @@ class Clustering {
   }
 
   void addScansOfVisitsWithoutIt(const ChangeGroup& cluster, const ChangeGroup& around, ScanNumbers& without) const {
-    VoteOfPlaces votes(all_.visits, cluster.size());
+    PlaceVotes votes(all_.visits, cluster.size());
     for (const std::uint32_t cluxel : cluster) {
       const RayFindings& there = *findingsAt(cluxel, true);
       votes.addPlace(there.hits, there.allPassed());

@@ -100,7 +100,7 @@ class Things {
   using VotesOfTimes = std::array<VisitVotes, 2>;
 
   VotesOfTimes votesAtCluxels(const ChangeGroup& cluster) const {
-    return votesOf(cluster.size(), [&](std::size_t time, std::size_t place, VoteOfPlaces& votes) {
+    return votesOf(cluster.size(), [&](std::size_t time, std::size_t place, PlaceVotes& votes) {
       const ChangedCluxels& all = survey_.cluxels;
       const RayFindings& found = (time == kBefore ? all.before : all.after)[cluster[place]];
       votes.addPlace(found.hits, found.allPassed());
@@ -108,7 +108,7 @@ class Things {
   }
 
   VotesOfTimes votesInCells(const ChangeGroup& group) const {
-    return votesOf(group.size(), [&](std::size_t time, std::size_t place, VoteOfPlaces& votes) {
+    return votesOf(group.size(), [&](std::size_t time, std::size_t place, PlaceVotes& votes) {
       const PointCell& cell = cells_[group[place]];
       const RayLooks& looks = time == time_ ? cell.own : cell.other;
       votes.addPlace(looks.hit_scans, looks.through_scans);
@@ -119,7 +119,7 @@ class Things {
   VotesOfTimes votesOf(std::size_t places, const AddPlace& add) const {
     VotesOfTimes votes;
     for (const std::size_t time : {kBefore, kAfter}) {
-      VoteOfPlaces gathered(survey_.visits, places);
+      PlaceVotes gathered(survey_.visits, places);
       for (std::size_t place = 0; place < places; ++place) add(time, place, gathered);
       votes[time] = gathered.take();
     }

@@ -29,9 +29,9 @@ struct ChangedThings {
 
 /// A thing is a cluster of cluxels that changed alike (clustersOf), or where there is none within 0.3 m, a part of
 /// cluxels (changedParts). Things that stood side by side are told apart (sheetsOf). An object of which neither tells
-/// is a thing, too, when its states do (ChangeSurvey::wholes). No thing is what had left before, or left
-/// again: the last visits of its own time saw through it. Nor is a part of an object that is there at the other time,
-/// too, when only visits without the object saw through the part's place.
+/// is a thing, too, when its states do (ChangeSurvey::wholes). A thing is dropped when the last visits of the time at
+/// which it was there saw through it: it had left before, or has left again. A part of an object that is there at both
+/// times is dropped when only visits without the object saw through the part's place.
 ChangedThings changedThings(const ChangeSurvey& survey);
 
 }  // namespace cluxel::tasks

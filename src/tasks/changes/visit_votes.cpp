@@ -48,14 +48,14 @@ std::uint32_t Visits::at(double time_s) const {
   return static_cast<std::uint32_t>(next - begins_s_.begin() - 1);
 }
 
-void VoteOfPlaces::addPlace(const ScanNumbers& hits, const ScanNumbers& passed) {
+void PlaceVotes::addPlace(const ScanNumbers& hits, const ScanNumbers& passed) {
   const std::size_t votes = std::min(places_, perception::kMaxPlaces);
   const std::size_t place = added_++ * votes / places_;
   hits.forEach([&](std::uint32_t scan) { of_visit_[visits_.ofScan(scan)].hits.set(place); });
   passed.forEach([&](std::uint32_t scan) { of_visit_[visits_.ofScan(scan)].seen_through.set(place); });
 }
 
-VisitVotes VoteOfPlaces::take() {
+VisitVotes PlaceVotes::take() {
   VisitVotes all;
   for (const auto& [visit, vote] : of_visit_) addVote(visit, vote, all);
   return all;

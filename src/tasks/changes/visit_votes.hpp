@@ -39,9 +39,9 @@ struct VisitVotes {
 };
 
 /// Gathers what scans found at the places of a thing.
-class VoteOfPlaces {
+class PlaceVotes {
  public:
-  VoteOfPlaces(const Visits& visits, std::size_t places) : visits_(visits), places_(places) {}
+  PlaceVotes(const Visits& visits, std::size_t places) : visits_(visits), places_(places) {}
   /// Places are added in their order.
   void addPlace(const ScanNumbers& hits, const ScanNumbers& passed);
   VisitVotes take();
