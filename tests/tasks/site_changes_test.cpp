@@ -141,7 +141,7 @@ TEST_F(SiteChangesTest, HasThePointsOfWhatChanged) {
   for (const ChangedPoint& point : points) {
     const SiteChange& change = found->changes[*with_points.insert(point.change).first];
     const ChangedThing& thing = change.now && !point.is_gone ? *change.now : change.thing;
-    EXPECT_EQ(point.is_gone, *scan_of.at(point.cloud).time_s < found->since_s);
+    EXPECT_EQ(point.is_gone, *scan_of.at(point.cloud).time_s < found->times.since_s);
     const std::uint32_t cluxel = answers.at(point.cloud).cluxel.at(point.point);
     EXPECT_TRUE(std::binary_search(thing.cluxels.begin(), thing.cluxels.end(), cluxel));
   }
@@ -177,7 +177,7 @@ TEST_F(SiteChangesTest, TheTaskAnswersWithTheChangesAndTheirPlaces) {
   }
   const TaskAnswer all =
       task.run({*map, true, {}},
-               TaskValues(task.parameters, {{"unobserved", "true"}, {"since", std::to_string(found->since_s)}}));
+               TaskValues(task.parameters, {{"unobserved", "true"}, {"since", std::to_string(found->times.since_s)}}));
   const auto unseen = std::count_if(found->states.begin(), found->states.end(), [](const ObjectStates& states) {
     return states.after == perception::PresenceState::NotObserved;
   });

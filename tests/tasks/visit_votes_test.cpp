@@ -72,10 +72,16 @@ perception::ScanVotes vote(double time_s, std::size_t hits, std::size_t seen_thr
   return scan;
 }
 
+ObjectStates statesOf(const std::vector<perception::ScanVotes>& votes, double since_s) {
+  std::vector<double> times_s;
+  for (const perception::ScanVotes& vote : votes) times_s.push_back(vote.time_s);
+  return tasks::statesOf(0, votes, Visits(times_s, since_s));
+}
+
 TEST(ObjectStates, OneRayThatPassesOnTheSameVisitDoesNotHideThatAThingLeft) {
   constexpr double kDay_s = 86400;
   const auto wasAway = [&](const std::vector<perception::ScanVotes>& history) {
-    return statesOf(0, history, 2 * kDay_s).was_away;
+    return statesOf(history, 2 * kDay_s).was_away;
   };
   EXPECT_TRUE(wasAway({vote(0, 60, 0), vote(60, 0, 1), vote(kDay_s, 0, 50), vote(2 * kDay_s, 60, 0)}));
   EXPECT_FALSE(wasAway({vote(0, 60, 0), vote(60, 0, 50), vote(2 * kDay_s, 60, 0)})) << "within one visit";
@@ -84,14 +90,14 @@ TEST(ObjectStates, OneRayThatPassesOnTheSameVisitDoesNotHideThatAThingLeft) {
 TEST(ObjectStates, OneLaterScanTellsThatAllOfAThingIsGone) {
   const auto isAllGone = [&](std::size_t hits, std::size_t seen_through) {
     const std::vector<perception::ScanVotes> votes{vote(0, 100, 0), vote(4000, hits, seen_through)};
-    return statesOf(0, votes, 4000).is_all_gone;
+    return statesOf(votes, 4000).is_all_gone;
   };
   EXPECT_TRUE(isAllGone(0, 95));
   EXPECT_FALSE(isAllGone(0, 60)) << "a scan sees through many places of a crown";
   EXPECT_FALSE(isAllGone(3, 95)) << "some of it is left";
   std::vector<perception::ScanVotes> elsewhere{vote(0, 10, 0), vote(4000, 0, 0)};
   for (std::size_t place = 10; place < 100; ++place) elsewhere[1].seen_through.set(place);
-  EXPECT_FALSE(statesOf(0, elsewhere, 4000).is_all_gone) << "where it was never hit, it may not have been";
+  EXPECT_FALSE(statesOf(elsewhere, 4000).is_all_gone) << "where it was never hit, it may not have been";
 }
 
 }  // namespace

@@ -84,7 +84,6 @@ class Survey {
  public:
   Survey(const mapping::MapReader& map, const ComparedTimes& times, std::size_t max_cluxels, unsigned threads)
       : map_(map),
-        since_s_(times.since_s),
         threads_(threads),
         clouds_(cloudsWithin(map.clouds(), times)),
         regions_(map, max_cluxels),
@@ -92,10 +91,10 @@ class Survey {
     std::vector<double> times_s;
     for (const mapping::Cloud* cloud : mapping::timedClouds(clouds_)) {
       times_s.push_back(*cloud->time_s);
-      scans_.push_back(
-          {*cloud, *cloud->time_s < since_s_ ? kBefore : kAfter, static_cast<std::uint32_t>(scans_.size())});
+      const std::size_t time = *cloud->time_s < times.since_s ? kBefore : kAfter;
+      scans_.push_back({*cloud, time, static_cast<std::uint32_t>(scans_.size())});
     }
-    survey_.visits = Visits(times_s, since_s_);
+    survey_.visits = Visits(times_s, times.since_s);
   }
 
   ChangeSurvey run() {
@@ -186,11 +185,10 @@ class Survey {
                  const std::vector<mapping::ObjectVotes>& votes) {
     for (std::size_t i = 0; i < region.objects.size(); ++i) {
       if (places[i].empty()) continue;
-      ObjectStates states = statesOf(region.number_of_objects[i], votes[i], since_s_);
+      ObjectStates states = statesOf(region.number_of_objects[i], votes[i], survey_.visits);
       const auto geometry = mapping::geometryOf(region.scene.cluxels, mapping::cluxelsOf(region.objects[i]));
       states.box = {geometry.min, geometry.max};
       states.centre = geometry.box.center.head<2>();
-      states.visits = visitsWithIt(votesByVisit(votes[i], survey_.visits));
       survey_.states.push_back(states);
       if (!changedAsWhole(states)) continue;
       WholeObject whole{states.object, mapping::cluxelsOf(region.objects[i]), states.box, states.visits};
@@ -232,7 +230,6 @@ class Survey {
   }
 
   const mapping::MapReader& map_;
-  double since_s_;
   unsigned threads_;
   std::vector<mapping::Cloud> clouds_;
   mapping::MapRegions regions_;

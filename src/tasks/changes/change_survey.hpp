@@ -32,6 +32,9 @@ struct WholeObject {
 struct ComparedTimes {
   double since_s = 0;
   double from_s = -std::numeric_limits<double>::infinity(), until_s = std::numeric_limits<double>::infinity();
+
+  /// Whether scans that come later than some time do not count.
+  bool endsEarly() const { return until_s < std::numeric_limits<double>::infinity(); }
 };
 
 /// Without the clouds of other times.

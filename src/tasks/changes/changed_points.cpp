@@ -45,7 +45,7 @@ ThingsOfCluxels thingsOfCluxels(const std::vector<SiteChange>& changes) {
 std::vector<ChangedPoint> changedPoints(const mapping::MapReader& map, const SiteChanges& changes,
                                         std::size_t max_cluxels) {
   const ThingsOfCluxels things = thingsOfCluxels(changes.changes);
-  const std::vector<mapping::Cloud> clouds = map.clouds();
+  const std::vector<mapping::Cloud> clouds = cloudsWithin(map.clouds(), changes.times);
   std::vector<ChangedPoint> points;
   mapping::MapRegions regions(map, max_cluxels);
   for (std::size_t r = 0; r < regions.size(); ++r) {
@@ -60,9 +60,7 @@ std::vector<ChangedPoint> changedPoints(const mapping::MapReader& map, const Sit
     }
     if (!has_changes) continue;
     for (const mapping::Cloud* cloud : mapping::timedClouds(clouds)) {
-      const double time_s = *cloud->time_s;
-      if (time_s > changes.until_s.value_or(time_s) || time_s < changes.from_s.value_or(time_s)) continue;
-      const bool is_before = time_s < changes.since_s;
+      const bool is_before = *cloud->time_s < changes.times.since_s;
       regions.forEachPoint(region, *cloud, [&](const Eigen::Vector3d& p_map, std::uint32_t cluxel, std::size_t point) {
         if (of_cluxel[cluxel] == nullptr) return;
         for (const ThingOfChange& of : *of_cluxel[cluxel]) {

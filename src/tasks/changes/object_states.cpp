@@ -4,25 +4,19 @@
 
 #include <algorithm>
 
-#include "tasks/changes/visit_votes.hpp"
-
 namespace cluxel::tasks {
 
 using perception::PresenceState;
 
 namespace {
 
-bool leftOnALaterVisit(std::span<const perception::ScanVotes> votes, const perception::Visibility& thing,
-                       const perception::PresenceParams& params) {
+bool leftOnALaterVisit(std::span<const perception::ScanVotes> votes, const Visits& visits,
+                       const perception::Visibility& thing, const perception::PresenceParams& params) {
   if (!showPresence(votes, thing, params)) return false;
-  // Goes to the end of the visit that saw it last: what later visits saw decides.
-  double last_of_visit_s = presenceOf(votes, thing, params)->last_seen_s;
-  for (std::size_t i = 0; i < votes.size(); ++i) {
-    if (votes[i].time_s <= last_of_visit_s) continue;
-    if (votes[i].time_s - last_of_visit_s > kPauseOfVisits_s) return showAbsence(votes.subspan(i), thing, params);
-    last_of_visit_s = votes[i].time_s;
-  }
-  return false;
+  const std::uint32_t last_with_it = visits.at(presenceOf(votes, thing, params)->last_seen_s);
+  const auto later =
+      std::find_if(votes.begin(), votes.end(), [&](const auto& vote) { return visits.at(vote.time_s) > last_with_it; });
+  return later != votes.end() && showAbsence({later, votes.end()}, thing, params);
 }
 
 /// Whether scans saw through nearly all places of a thing, and hit none.
@@ -36,9 +30,10 @@ bool sawThroughAll(std::span<const perception::ScanVotes> votes, const perceptio
 
 }  // namespace
 
-ObjectStates statesOf(std::uint32_t object, std::span<const perception::ScanVotes> votes, double since_s) {
+ObjectStates statesOf(std::uint32_t object, std::span<const perception::ScanVotes> votes, const Visits& visits) {
   constexpr perception::PresenceParams kParams;
-  const auto later = std::find_if(votes.begin(), votes.end(), [&](const auto& vote) { return vote.time_s >= since_s; });
+  const auto later = std::find_if(votes.begin(), votes.end(),
+                                  [&](const auto& vote) { return visits.isAfter(visits.at(vote.time_s)); });
   const auto before = votes.first(static_cast<std::size_t>(later - votes.begin())),
              after = votes.subspan(before.size());
   const perception::Visibility thing = perception::visibilityOf(votes);
@@ -49,11 +44,12 @@ ObjectStates statesOf(std::uint32_t object, std::span<const perception::ScanVote
   const bool came = states.before == PresenceState::Absent && states.after == PresenceState::Present;
   if (left || came) {
     const auto without_it = left ? after : before, with_it = left ? before : after;
-    states.was_away = leftOnALaterVisit(without_it, thing, kParams);
+    states.was_away = leftOnALaterVisit(without_it, visits, thing, kParams);
     states.is_all_gone = showPresence(with_it, thing, kParams) && sawThroughAll(without_it, thing);
   }
   states.log_odds_before = logOddsOfPresence(before, thing.share_of_hits, kParams);
   states.log_odds_after = logOddsOfPresence(after, thing.share_of_hits, kParams);
+  states.visits = visitsWithIt(votesByVisit(votes, visits));
   return states;
 }
 

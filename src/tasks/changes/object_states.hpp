@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "perception/visibility/presence.hpp"
+#include "tasks/changes/visit_votes.hpp"
 
 namespace cluxel::tasks {
 
@@ -36,7 +37,8 @@ inline bool wasNotObservedAgain(const ObjectStates& states) {
   return states.before == perception::PresenceState::Present && states.after == perception::PresenceState::NotObserved;
 }
 
-/// The states that the votes of scans before `since_s` and from it on tell. `votes` ascend by time.
-ObjectStates statesOf(std::uint32_t object, std::span<const perception::ScanVotes> votes, double since_s);
+/// The states that the votes of scans of the visits before and after tell. `votes` ascend by time. The box and the
+/// centre are not set.
+ObjectStates statesOf(std::uint32_t object, std::span<const perception::ScanVotes> votes, const Visits& visits);
 
 }  // namespace cluxel::tasks

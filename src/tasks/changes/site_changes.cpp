@@ -116,6 +116,15 @@ std::vector<SiteChange> withMoves(const mapping::MapReader& map, const ChangedTh
   return changes;
 }
 
+SiteChanges changesBetween(const mapping::MapReader& map, const ComparedTimes& times, unsigned threads,
+                           std::size_t max_cluxels) {
+  ChangeSurvey survey = surveyOf(map, times, max_cluxels, threads);
+  SiteChanges found{times, {}, {}};
+  found.changes = withMoves(map, changedThings(survey));
+  found.states = std::move(survey.states);
+  return found;
+}
+
 ChangeJson boxJson(const Eigen::AlignedBox3d& box) {
   const auto rounded = [](const Eigen::Vector3d& v) {
     return ChangeJson{std::round(v.x() * 1000) / 1000, std::round(v.y() * 1000) / 1000,
@@ -161,15 +170,11 @@ std::vector<Visit> visitsOf(const std::vector<mapping::Cloud>& clouds) {
 SiteChanges changesIn(const mapping::MapReader& map, const ChangeTimes& times, unsigned threads,
                       std::size_t max_cluxels) {
   ComparedTimes compared;
-  compared.from_s = times.from_s.value_or(compared.from_s), compared.until_s = times.until_s.value_or(compared.until_s);
+  if (times.until_s) compared.until_s = *times.until_s;
   const std::vector<mapping::Cloud> clouds = cloudsWithin(map.clouds(), compared);
   compared.since_s = times.since_s ? *times.since_s : beginOfLastVisit(clouds, times);
   requireBothSides(scanTimes(clouds), scanTimes(map.clouds()), compared.since_s, times);
-  ChangeSurvey survey = surveyOf(map, compared, max_cluxels, threads);
-  SiteChanges found{compared.since_s, times.until_s, times.from_s, {}, {}};
-  found.changes = withMoves(map, changedThings(survey));
-  found.states = std::move(survey.states);
-  return found;
+  return changesBetween(map, compared, threads, max_cluxels);
 }
 
 std::vector<SiteChanges> changesOfVisits(const mapping::MapReader& map, unsigned threads) {
@@ -177,17 +182,18 @@ std::vector<SiteChanges> changesOfVisits(const mapping::MapReader& map, unsigned
   const std::vector<Visit> visits = visitsOf(map.clouds());
   std::vector<SiteChanges> found;
   for (std::size_t i = 1; i < visits.size(); ++i)
-    found.push_back(changesIn(map,
-                              {.since_s = visits[i].begin_s,
-                               .until_s = visits[i].end_s,
-                               .from_s = visits[i - std::min(i, kVisitsBefore)].begin_s},
-                              threads));
+    found.push_back(changesBetween(map,
+                                   {.since_s = visits[i].begin_s,
+                                    .from_s = visits[i - std::min(i, kVisitsBefore)].begin_s,
+                                    .until_s = visits[i].end_s},
+                                   threads, kRegionCluxels));
   return found;
 }
 
 std::string periodText(const SiteChanges& changes) {
-  return "since " + dateTimeText(changes.since_s) +
-         (changes.until_s ? " until " + dateTimeText(*changes.until_s) : std::string());
+  const ComparedTimes& times = changes.times;
+  return "since " + dateTimeText(times.since_s) +
+         (times.endsEarly() ? " until " + dateTimeText(times.until_s) : std::string());
 }
 
 std::string nameOf(const mapping::MapReader& map, const ChangedThing& thing) {
@@ -240,8 +246,8 @@ double timeNamed(const std::string& text) {
 
 std::string changesJson(const mapping::MapReader& map, const SiteChanges& found) {
   ChangeJson json{
-      {"since", dateTimeText(found.since_s)}, {"changes", ChangeJson::array()}, {"states", ChangeJson::array()}};
-  if (found.until_s) json["until"] = dateTimeText(*found.until_s);
+      {"since", dateTimeText(found.times.since_s)}, {"changes", ChangeJson::array()}, {"states", ChangeJson::array()}};
+  if (found.times.endsEarly()) json["until"] = dateTimeText(found.times.until_s);
   for (const SiteChange& change : found.changes) {
     ChangeJson entry = thingJson(map, change.thing);
     entry["change"] = nameOf(change.kind);

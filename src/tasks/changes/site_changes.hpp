@@ -35,13 +35,10 @@ std::string_view nameOf(SiteChange::Kind kind);  ///< "vanished"
 struct ChangeTimes {
   std::optional<double> since_s{};  ///< scans from then on are "after"; absent: the begin of the last visit
   std::optional<double> until_s{};  ///< later scans do not count
-  std::optional<double> from_s{};   ///< earlier scans do not count
 };
 
 struct SiteChanges {
-  double since_s = 0;                ///< scans from this time on are "after"
-  std::optional<double> until_s{};   ///< later scans do not count
-  std::optional<double> from_s{};    ///< earlier scans do not count
+  ComparedTimes times;
   std::vector<ObjectStates> states;  ///< of each object but ground, by number
   std::vector<SiteChange> changes;   ///< by first cluxel
 };
