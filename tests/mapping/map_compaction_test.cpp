@@ -166,6 +166,18 @@ TEST_F(MapCompaction, AfterAChangeFreePagesBecomeHolesThatTheNextChangeFills) {
   EXPECT_TRUE(checkMap(map).sound());
 }
 
+TEST_F(MapCompaction, MakesHolesWhereAMapCannotBeRewritten) {
+  if (!hasHoles(folder->path())) GTEST_SKIP() << "the file system has no holes";
+  const fs::path map = copy();
+  leaveFree(map, 8'000'000);
+  const auto disk = diskBytes(map);
+  fs::create_directories(map.string() + ".compact/in the way");
+  freeSpaceOfChange(map, silence());
+  fs::remove_all(map.string() + ".compact");
+  EXPECT_LT(diskBytes(map), disk - 7'000'000);
+  EXPECT_TRUE(checkMap(map).sound());
+}
+
 TEST_F(MapCompaction, FillsThePagesOfIndexes) {
   const fs::path map = copy();
   compactMap(map);

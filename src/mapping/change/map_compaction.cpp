@@ -26,9 +26,18 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::uint64_t kSmallestGain = std::uint64_t{1} << 20U;
+/// A change of a small map leaves half-filled pages in most of an index. Up to this size filling all takes a third of a
+/// second at most.
+constexpr std::uint64_t kSmallMap = std::uint64_t{96} << 20U;
 
 bool isMuch(std::uint64_t bytes, std::uint64_t of_bytes, double max_share) {
   return bytes > kSmallestGain && static_cast<double>(bytes) > max_share * static_cast<double>(of_bytes);
+}
+
+/// Whether a small map has many half-filled pages of indexes.
+bool isToBeFilled(const rdf::FreeSpace& space) {
+  return space.file_bytes <= kSmallMap &&
+         isMuch(space.bytes - space.in_free_pages, space.file_bytes - space.in_free_pages, kMaxFreeShare);
 }
 
 struct stat statusOf(const fs::path& file) {
@@ -112,14 +121,15 @@ void compactIfSparse(const fs::path& map, ProgressSink& sink, double max_free_sh
 Compaction compactIfSparse(const fs::path& map, const rdf::FreeSpace& space, ProgressSink& sink,
                            double max_free_share) {
   try {
-    if (!fs::exists(copyOf(map)) && !isMuch(space.bytes, space.file_bytes, max_free_share))
+    if (!fs::exists(copyOf(map)) && !isMuch(space.bytes, space.file_bytes, max_free_share) && !isToBeFilled(space))
       return Compaction::NotNeeded;
     if (statusOf(map).st_nlink > 1)
       throw Error(ErrorKind::StoreUnavailable, "it has another name (a hard link), which would keep the old file");
     if (fs::space(fs::absolute(withoutLinks(map)).parent_path()).available < fs::file_size(map))
       throw Error(ErrorKind::StoreUnavailable, "there is no room beside it for a copy");
     const bool pages_are_full = !isMuch(space.bytes - space.in_free_pages, space.file_bytes, max_free_share);
-    compactMap(map, pages_are_full ? rdf::CopiedPages::AsTheyAre : rdf::CopiedPages::Filled);
+    const bool fills_pages = !pages_are_full || space.file_bytes <= kSmallMap;
+    compactMap(map, fills_pages ? rdf::CopiedPages::Filled : rdf::CopiedPages::AsTheyAre);
     return Compaction::Done;
   } catch (const std::exception& error) {
     noteFailure(map, error, sink);
@@ -128,7 +138,7 @@ Compaction compactIfSparse(const fs::path& map, const rdf::FreeSpace& space, Pro
 }
 
 void freeSpaceOfChange(const fs::path& map, const rdf::FreeSpace& space, ProgressSink& sink) {
-  if (compactIfSparse(map, space, sink, kMaxFreeShareOfChanged) != Compaction::NotNeeded) return;
+  if (compactIfSparse(map, space, sink, kMaxFreeShareOfChanged) == Compaction::Done) return;
   try {
     if (isMuch(space.freeOnDisk(), space.disk_bytes, kMaxFreeShareOfDisk))
       rdf::releaseFreePages(*rdf::Environment::open(map, rdf::OpenMode::ReadWrite));

@@ -25,21 +25,23 @@ void copyCompacted(const std::filesystem::path& map, const std::filesystem::path
 inline constexpr double kMaxFreeShare = 0.05;
 /// After a change: the next change uses the free pages, and a rewrite after each would cost more than the change.
 inline constexpr double kMaxFreeShareOfChanged = 0.25;
-/// Of what the map takes on the disk, after a change. Half-filled pages of indexes come on top.
+/// Of what the map takes on the disk, after a change. In a map of more than 96 MiB half-filled pages of indexes come on
+/// top.
 inline constexpr double kMaxFreeShareOfDisk = 0.01;
 
 /// Compacts a map when that frees more than this share of it, and more than a mebibyte. So the cost follows the
-/// changes that left the space. Pages of indexes are filled when that alone would free as much. Where it fails, the map
-/// stays larger, and a note tells why.
+/// changes that left the space. Pages of indexes are filled when that alone would free as much. A map of up to 96 MiB
+/// is compacted, with full pages, also when half-filled ones take more than kMaxFreeShare of what is in use. Where it
+/// fails, the map stays larger, and a note tells why.
 void compactIfSparse(const std::filesystem::path& map, ProgressSink& sink, double max_free_share = kMaxFreeShare);
 enum class Compaction : std::uint8_t { NotNeeded, Done, Failed };
 /// The same when what it would free is known.
 Compaction compactIfSparse(const std::filesystem::path& map, const rdf::FreeSpace& space, ProgressSink& sink,
                            double max_free_share);
 
-/// After a change: compacts the map when more than kMaxFreeShareOfChanged would be freed. Else, when its free pages
-/// take more than kMaxFreeShareOfDisk of what it takes on the disk, they become holes in the file, where the file
-/// system can.
+/// After a change: compacts the map when more than kMaxFreeShareOfChanged would be freed. Else, or where that fails,
+/// free pages that take more than kMaxFreeShareOfDisk of what the map takes on the disk become holes in the file, if
+/// the file system can.
 void freeSpaceOfChange(const std::filesystem::path& map, ProgressSink& sink);
 /// The same when the free space is known.
 void freeSpaceOfChange(const std::filesystem::path& map, const rdf::FreeSpace& space, ProgressSink& sink);
