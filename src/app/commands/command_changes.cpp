@@ -32,13 +32,7 @@ void printStates(const mapping::MapReader& map, const tasks::SiteChanges& found)
 }
 
 void printChanges(const mapping::MapReader& map, const tasks::SiteChanges& found) {
-  std::size_t unseen = 0, there = 0;
-  for (const tasks::ObjectStates& states : found.states) {
-    unseen += wasNotObservedAgain(states) ? 1 : 0;
-    there += states.after == perception::PresenceState::Present ? 1 : 0;
-  }
-  std::printf("%s: %zu changes; %zu objects are there, %zu were not observed again\n", periodText(found).c_str(),
-              found.changes.size(), there, unseen);
+  std::puts(summaryOf(found).c_str());
   for (const tasks::SiteChange& change : found.changes) {
     std::printf("%-8s  %s", std::string(nameOf(change.kind)).c_str(), nameOf(map, change.thing).c_str());
     if (change.now) std::printf(" by %.1f m, now %s", change.distance_m, nameOf(map, *change.now).c_str());

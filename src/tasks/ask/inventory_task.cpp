@@ -143,18 +143,12 @@ TaskAnswer runChanges(const TaskContext& context, const TaskValues& values) {
     if (context.with_reasons && states != states_of.end())
       answer.rows.back().why.push_back(presenceLine(*states->second));
   }
-  std::size_t unseen = 0, there = 0;
   for (const ObjectStates& states : found.states) {
-    there += states.after == perception::PresenceState::Present ? 1 : 0;
-    if (!wasNotObservedAgain(states)) continue;
-    ++unseen;
-    if (!values.flag("unobserved")) continue;
+    if (!values.flag("unobserved") || !wasNotObservedAgain(states)) continue;
     answer.rows.push_back(unobservedRow(map, states));
     if (context.with_reasons) answer.rows.back().why.push_back(presenceLine(states));
   }
-  answer.notes.push_back(periodText(found) + ": " + std::to_string(found.changes.size()) + " changes; " +
-                         std::to_string(there) + " objects are there, " + std::to_string(unseen) +
-                         " were not observed again");
+  answer.notes.push_back(summaryOf(found));
   return answer;
 }
 

@@ -8,6 +8,7 @@
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <tuple>
 
 #include "base/utc_time.hpp"
@@ -190,10 +191,34 @@ std::vector<SiteChanges> changesOfVisits(const mapping::MapReader& map, unsigned
   return found;
 }
 
-std::string periodText(const SiteChanges& changes) {
+std::vector<std::uint32_t> objectsThatDifferByStates(const SiteChanges& changes) {
+  std::set<std::uint32_t> named;
+  for (const SiteChange& change : changes.changes) {
+    if (change.thing.object) named.insert(*change.thing.object);
+    if (change.now && change.now->object) named.insert(*change.now->object);
+  }
+  std::vector<std::uint32_t> objects;
+  for (const ObjectStates& states : changes.states) {
+    const bool went = states.before == PresenceState::Present && states.after == PresenceState::Absent;
+    const bool came = states.before == PresenceState::Absent && states.after == PresenceState::Present;
+    if ((went || came) && !named.contains(states.object)) objects.push_back(states.object);
+  }
+  return objects;
+}
+
+std::string summaryOf(const SiteChanges& changes) {
+  const auto objectsWhere = [&](const auto& holds) {
+    return std::to_string(std::count_if(changes.states.begin(), changes.states.end(), holds));
+  };
+  const auto isThere = [](const ObjectStates& states) { return states.after == PresenceState::Present; };
   const ComparedTimes& times = changes.times;
-  return "since " + dateTimeText(times.since_s) +
-         (times.endsEarly() ? " until " + dateTimeText(times.until_s) : std::string());
+  std::string text = "since " + dateTimeText(times.since_s);
+  if (times.endsEarly()) text += " until " + dateTimeText(times.until_s);
+  text += ": " + std::to_string(changes.changes.size()) + " changes; " + objectsWhere(isThere) +
+          " objects are there, " + objectsWhere(wasNotObservedAgain) + " were not observed again";
+  if (const std::size_t more = objectsThatDifferByStates(changes).size(); more > 0)
+    text += "; " + std::to_string(more) + " more came or went by their states alone, which is less sure";
+  return text;
 }
 
 std::string nameOf(const mapping::MapReader& map, const ChangedThing& thing) {

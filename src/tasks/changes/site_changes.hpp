@@ -56,8 +56,8 @@ SiteChanges changesIn(const mapping::MapReader& map, const ChangeTimes& times, u
 /// saw them. Cost: that of changesIn() for five visits, for each visit.
 std::vector<SiteChanges> changesOfVisits(const mapping::MapReader& map, unsigned threads);
 
-/// "since 2023-11-15T22:13:20.000000Z", and until when, where that was asked.
-std::string periodText(const SiteChanges& changes);
+/// "since 2023-11-15T22:13:20.000000Z: 3 changes; 20 objects are there, ...": one line without an end.
+std::string summaryOf(const SiteChanges& changes);
 
 /// "StreetSign object/0123456789ab", or "part of ...", or "something unnamed".
 std::string nameOf(const mapping::MapReader& map, const ChangedThing& thing);
@@ -74,6 +74,10 @@ std::vector<PartStates> statesOfParts(const SiteChanges& changes);
 
 /// Seconds since 1970 of "2023-11-15T22:13:20Z", "2023-11-15" or a number of seconds. Throws Error (InvalidArgument).
 double timeNamed(const std::string& text);
+
+/// Numbers of objects that came or went by their states, though no change names them: the states follow from all places
+/// of an object together, a change from places that are each seen well.
+std::vector<std::uint32_t> objectsThatDifferByStates(const SiteChanges& changes);
 
 std::string changesJson(const mapping::MapReader& map, const SiteChanges& changes);
 
