@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <numeric>
 #include <random>
 
 namespace cluxel::perception {
@@ -15,6 +16,13 @@ ScanVotes votes(double time_s, std::size_t hits, std::size_t seen_through) {
   for (std::size_t i = 0; i < hits; ++i) scan.hits.set(i);
   for (std::size_t i = 0; i < seen_through; ++i) scan.seen_through.set(hits + i);
   return scan;
+}
+
+/// Each scan is a visit.
+PresenceState stateAfter(const std::vector<ScanVotes>& history, const Visibility& thing, const PresenceParams& params) {
+  std::vector<std::uint32_t> visits(history.size());
+  std::iota(visits.begin(), visits.end(), 0U);
+  return stateAtEnd(history, visits, thing, params).state;
 }
 
 PresenceState stateOf(const std::vector<ScanVotes>& history) {
@@ -97,6 +105,17 @@ TEST(Presence, OfWhatCameBackHasNoEnd) {
   ASSERT_TRUE(twice.has_value());
   EXPECT_EQ(twice->first_seen_s, 1);
   EXPECT_EQ(twice->seen_empty_s, 0);
+}
+
+TEST(Presence, NothingLeavesWithinOneVisit) {
+  const std::vector<ScanVotes> history{votes(1, 12, 0), votes(2, 4, 7)};
+  const Visibility sign = visibilityOf(std::vector<ScanVotes>{votes(0, 12, 0), votes(3, 12, 0)});
+  const std::vector<std::uint32_t> one_visit{0, 0}, two_visits{0, 1};
+  const StateAtEnd there = stateAtEnd(history, one_visit, sign, {}), away = stateAtEnd(history, two_visits, sign, {});
+  EXPECT_EQ(there.state, PresenceState::Present);
+  EXPECT_GT(there.log_odds, 6);
+  EXPECT_EQ(away.state, PresenceState::Absent);
+  EXPECT_LT(away.log_odds, -6);
 }
 
 TEST(Presence, OneWeakHitDoesNotOutweighWhatIsSeenThrough) {

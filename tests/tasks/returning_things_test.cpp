@@ -123,6 +123,16 @@ TEST(ReturningThings, CarsThatOneVisitSawBothHaveNotMoved) {
   EXPECT_EQ(kindsAt(moved.changesSince(1), kOther.center()), std::vector{SiteChange::Kind::Moved});
 }
 
+TEST(ReturningThings, WhatLeavesBesideThePlaceOfWhatLeftBeforeHasVanished) {
+  const Box beside = boxFrom({2.4, 5.9, 0.25}, {6.6, 7.7, 1.5});
+  const BoxMap site({visit({beside}), visit({}), visit({kCar}), visit({})});
+  const SiteChanges found = site.changesSince(3);
+  const auto changes = changesAt(found, kCar.center());
+  ASSERT_EQ(changes.size(), 1U);
+  EXPECT_EQ(changes[0]->kind, SiteChange::Kind::Vanished);
+  EXPECT_LT(changes[0]->thing.box.max().y(), 6.3) << "with what left before";
+}
+
 TEST(ReturningThings, AVisitTellsWhatItChangedOnce) {
   const BoxMap site({visit({kCar}), visit({}), visit({kOther}), visit({kOther})});
   const std::vector<SiteChanges> visits = changesOfVisits(site.map(), 1);

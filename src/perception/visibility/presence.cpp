@@ -114,14 +114,22 @@ std::string_view nameOf(PresenceState state) {
   return kNames[static_cast<std::size_t>(state)];
 }
 
-PresenceState stateAfter(std::span<const ScanVotes> votes, const Visibility& thing, const PresenceParams& params) {
-  if (const auto there = timesOf(votes, thing, params)) {
-    if (showAbsence(votes.subspan(there->end), thing, params)) return PresenceState::Absent;
-    // Weak evidence for the thing does not outweigh what shows that it is gone.
-    if (there->log_odds >= params.decided) return PresenceState::Present;
-    return showAbsence(votes, thing, params) ? PresenceState::Absent : PresenceState::Present;
+StateAtEnd stateAtEnd(std::span<const ScanVotes> votes, std::span<const std::uint32_t> visits, const Visibility& thing,
+                      const PresenceParams& params) {
+  const auto logOddsOf = [&](std::span<const ScanVotes> some) {
+    return logOddsOfPresence(some, thing.share_of_hits, params);
+  };
+  const auto there = timesOf(votes, thing, params);
+  if (there) {
+    const auto end = std::upper_bound(visits.begin(), visits.end(), visits[there->end - 1]);
+    const auto later = votes.subspan(static_cast<std::size_t>(end - visits.begin()));
+    if (showAbsence(later, thing, params)) return {PresenceState::Absent, logOddsOf(later)};
+    if (there->log_odds >= params.decided) return {PresenceState::Present, there->log_odds};
   }
-  return showAbsence(votes, thing, params) ? PresenceState::Absent : PresenceState::NotObserved;
+  // Weak evidence for the thing does not outweigh what shows that it is gone.
+  if (showAbsence(votes, thing, params)) return {PresenceState::Absent, logOddsOf(votes)};
+  return there ? StateAtEnd{PresenceState::Present, there->log_odds}
+               : StateAtEnd{PresenceState::NotObserved, logOddsOf(votes)};
 }
 
 }  // namespace cluxel::perception

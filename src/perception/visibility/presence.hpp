@@ -69,12 +69,18 @@ std::optional<Presence> presenceOf(std::span<const ScanVotes> votes, const Visib
 /// Whether scans in a row show that the thing was there: their log-odds are `decided` or more.
 bool showPresence(std::span<const ScanVotes> votes, const Visibility& thing, const PresenceParams& params);
 
-/// The state of a thing at the end of some scans: absent when its place was seen through after the last interval in
-/// which it was there, or where evidence for that interval is weak (showPresence) and all of the scans show that it is
-/// away.
 enum class PresenceState : std::uint8_t { Present, Absent, NotObserved };
 std::string_view nameOf(PresenceState state);  ///< "not observed"
 
-PresenceState stateAfter(std::span<const ScanVotes> votes, const Visibility& thing, const PresenceParams& params);
+struct StateAtEnd {
+  PresenceState state = PresenceState::NotObserved;
+  double log_odds = 0;  ///< of "there", from the scans that tell the state; from all when they do not tell it
+};
+
+/// The state of a thing at the end of some scans: absent when its place was seen through after the visit that ends the
+/// last interval in which it was there, or where evidence for that interval is weak (showPresence) and all of the scans
+/// show that it is away. `visits`: of each of the scans, ascending. Within one visit nothing leaves.
+StateAtEnd stateAtEnd(std::span<const ScanVotes> votes, std::span<const std::uint32_t> visits, const Visibility& thing,
+                      const PresenceParams& params);
 
 }  // namespace cluxel::perception

@@ -111,7 +111,7 @@ TaskRow changeRow(const mapping::MapReader& map, const SiteChange& change) {
   return row;
 }
 
-/// How sure it is that the object was there before and is there now.
+/// How sure it is that an object was there before and is there now.
 std::string presenceLine(const ObjectStates& states) {
   std::array<char, 128> line{};
   std::snprintf(line.data(), line.size(), "before: %s (log-odds %.1f), since: %s (%.1f)",
@@ -141,7 +141,8 @@ TaskAnswer runChanges(const TaskContext& context, const TaskValues& values) {
     answer.rows.push_back(changeRow(map, change));
     const auto states = change.thing.object ? states_of.find(*change.thing.object) : states_of.end();
     if (context.with_reasons && states != states_of.end())
-      answer.rows.back().why.push_back(presenceLine(*states->second));
+      answer.rows.back().why.push_back((change.thing.is_part ? "of the object as a whole: " : "") +
+                                       presenceLine(*states->second));
   }
   for (const ObjectStates& states : found.states) {
     if (!values.flag("unobserved") || !wasNotObservedAgain(states)) continue;

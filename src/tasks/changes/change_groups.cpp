@@ -18,6 +18,12 @@ std::vector<ChangeGroup> ChangeGroups::connected() const {
   return groupsOf(std::move(is_open), 1);
 }
 
+std::vector<ChangeGroup> ChangeGroups::connectedAmong(const ChangeGroup& items, std::size_t min_size) const {
+  std::vector<bool> is_open(states_.size(), false);
+  for (const std::uint32_t item : items) is_open[item] = states_[item] == ChangeState::Changed;
+  return groupsOf(std::move(is_open), min_size);
+}
+
 std::vector<ChangeGroup> ChangeGroups::groupsOf(std::vector<bool> is_open, std::size_t min_size) const {
   std::vector<ChangeGroup> groups;
   for (std::uint32_t start = 0; start < states_.size(); ++start) {

@@ -31,6 +31,8 @@ class ChangeGroups {
   std::vector<ChangeGroup> all(std::size_t min_size) const;
   /// All changed items in groups of those that are near to each other, whatever else is near; in the same order.
   std::vector<ChangeGroup> connected() const;
+  /// The same for some items, in groups of `min_size` or more.
+  std::vector<ChangeGroup> connectedAmong(const ChangeGroup& items, std::size_t min_size) const;
   /// The group and what is near it.
   ChangeGroup withNear(const ChangeGroup& group) const;
   /// The share of the decided items that changed.

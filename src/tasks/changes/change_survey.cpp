@@ -204,17 +204,22 @@ class Survey {
     PointCells parts;
     std::array<std::vector<std::uint32_t>, 2> numbers;
     for (const std::size_t time : {kBefore, kAfter})
-      for (const ChangeGroup& group : survey_.parts[time])
+      for (const ChangeGroup& group : survey_.parts[time]) {
+        ScanNumbers scans;
+        for (const std::uint32_t cell : group) scans |= survey_.cells[time][cell].scans;
         for (const std::uint32_t cell : group) {
           numbers[time].push_back(cell);
           parts[time].push_back(survey_.cells[time][cell]);
+          parts[time].back().scans = scans;
         }
+      }
     for (const TimedScan& scan : scans_) lookAgain(scan, parts[scan.time]);
     for (const std::size_t time : {kBefore, kAfter})
       for (std::size_t i = 0; i < numbers[time].size(); ++i)
         survey_.cells[time][numbers[time][i]].own = parts[time][i].own;
   }
 
+  /// `scans` of the cells are those of the whole part: visits before the first of them came before the part.
   void lookAgain(const TimedScan& scan, std::vector<PointCell>& parts) {
     ChangedCluxels& all = survey_.cluxels;
     std::vector<RayFindings>& found = scan.time == kBefore ? all.before : all.after;
@@ -224,8 +229,11 @@ class Survey {
       for (std::size_t i = begin; i < end; ++i)
         if (all.is_told[i]) found[i].add(rays.verdictAt(all.places[i], kCluxelRays), scan.number);
     });
+    const std::uint32_t visit = survey_.visits.ofScan(scan.number);
     inPieces(parts.size(), threads_, [&](std::size_t begin, std::size_t end) {
-      lookAtCells(rays, scan.number, &PointCell::own, std::span(parts).subspan(begin, end - begin));
+      for (PointCell& cell : std::span(parts).subspan(begin, end - begin))
+        if (survey_.visits.ofScan(cell.scans.first()) <= visit)
+          lookAtCells(rays, scan.number, &PointCell::own, {&cell, 1});
     });
   }
 

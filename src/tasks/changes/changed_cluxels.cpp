@@ -21,8 +21,10 @@ class Clustering {
       : kind_(kind),
         all_(all),
         cluxels_(all.cluxels),
-        groups_(statesIn(kind, all), [this](auto cluxel, const auto& visit) {
-          for (const std::uint32_t other : cluxels_.neighbours(cluxel)) visit(other);
+        has_left_(leftIn(kind, all)),
+        groups_(statesIn(kind, all, has_left_), [this](auto cluxel, const auto& visit) {
+          for (const std::uint32_t other : cluxels_.neighbours(cluxel))
+            if (!has_left_[other]) visit(other);
         }) {}
 
   std::vector<ChangeGroup> all() const { return groups_.all(kMinCluxels); }
@@ -35,9 +37,13 @@ class Clustering {
     return clusters;
   }
 
-  std::vector<ChangeGroup> sureOf(std::vector<ChangeGroup> clusters) const {
-    std::erase_if(clusters, [this](const ChangeGroup& cluster) { return !isSure(cluster); });
-    return clusters;
+  std::vector<ChangeGroup> sureOf(const std::vector<ChangeGroup>& clusters) const {
+    std::vector<ChangeGroup> sure;
+    for (const ChangeGroup& cluster : clusters)
+      for (ChangeGroup& rest : groups_.connectedAmong(cluster, kMinCluxels))
+        if (isSure(rest) && !hasLeft(rest, cluster)) sure.push_back(std::move(rest));
+    std::sort(sure.begin(), sure.end());
+    return sure;
   }
 
  private:
@@ -52,13 +58,30 @@ class Clustering {
   static constexpr double kDense = 0.6;  ///< share of scans with few rays that hit a thing through which few rays pass
   static constexpr perception::PresenceParams kPresence{};
 
-  static std::vector<ChangeState> statesIn(CluxelChange kind, const ChangedCluxels& all) {
+  static std::vector<ChangeState> statesIn(CluxelChange kind, const ChangedCluxels& all,
+                                           const std::vector<bool>& has_left) {
     std::vector<ChangeState> states;
-    for (const CluxelChange change : all.changes)
-      states.push_back(change == CluxelChange::Undecided ? ChangeState::Undecided
-                       : change == kind                  ? ChangeState::Changed
-                                                         : ChangeState::Stable);
+    for (std::size_t i = 0; i < all.changes.size(); ++i)
+      states.push_back(all.changes[i] == CluxelChange::Undecided || has_left[i] ? ChangeState::Undecided
+                       : all.changes[i] == kind                                 ? ChangeState::Changed
+                                                                                : ChangeState::Stable);
     return states;
+  }
+
+  static std::uint32_t lastVisit(const ScanNumbers& scans, const ChangedCluxels& all) {
+    return all.visits.ofScan(scans.last());
+  }
+
+  /// Of which rays of a visit passed after the last visit that hit them.
+  static std::vector<bool> leftIn(CluxelChange kind, const ChangedCluxels& all) {
+    std::vector<bool> has_left(all.changes.size(), false);
+    for (std::size_t i = 0; i < has_left.size(); ++i) {
+      if (all.changes[i] != kind) continue;
+      const RayFindings& there = kind == CluxelChange::Vanished ? all.before[i] : all.after[i];
+      const ScanNumbers passed = there.allPassed();
+      has_left[i] = there.isHit() && !passed.empty() && lastVisit(passed, all) > lastVisit(there.hits, all);
+    }
+    return has_left;
   }
 
   /// The findings at a cluxel while the thing was there, or was not; null for ground.
@@ -91,13 +114,31 @@ class Clustering {
     return without;
   }
 
-  void addScansOfVisitsWithoutIt(const ChangeGroup& cluster, const ChangeGroup& around, ScanNumbers& without) const {
+  /// What the visits of the time with the thing found.
+  VisitVotes votesWithIt(const ChangeGroup& cluster) const {
     PlaceVotes votes(all_.visits, cluster.size());
     for (const std::uint32_t cluxel : cluster) {
       const RayFindings& there = *findingsAt(cluxel, true);
       votes.addPlace(there.hits, there.allPassed());
     }
-    const std::vector<std::uint32_t> visits = visitsWithoutIt(votes.take());
+    return votes.take();
+  }
+
+  /// Whether what is left of a cluster belongs to a thing that was away in the end. The cluxels that have left, and
+  /// that the same visit hit last, tell of this thing: later visits may not have seen the rest.
+  bool hasLeft(const ChangeGroup& rest, const ChangeGroup& cluster) const {
+    const auto lastHit = [this](std::uint32_t cluxel) { return lastVisit(findingsAt(cluxel, true)->hits, all_); };
+    std::uint32_t last = 0;
+    for (const std::uint32_t cluxel : rest)
+      if (findingsAt(cluxel, true)->isHit()) last = std::max(last, lastHit(cluxel));
+    ChangeGroup thing = rest;
+    for (const std::uint32_t cluxel : cluster)
+      if (has_left_[cluxel] && lastHit(cluxel) == last) thing.push_back(cluxel);
+    return isAwayAtEnd(votesWithIt(thing));
+  }
+
+  void addScansOfVisitsWithoutIt(const ChangeGroup& cluster, const ChangeGroup& around, ScanNumbers& without) const {
+    const std::vector<std::uint32_t> visits = visitsWithoutIt(votesWithIt(cluster));
     if (visits.empty()) return;
     for (const std::uint32_t cluxel : around)
       if (const RayFindings* there = findingsAt(cluxel, true))
@@ -202,6 +243,7 @@ class Clustering {
   CluxelChange kind_;
   const ChangedCluxels& all_;
   const perception::SceneCluxels& cluxels_;
+  std::vector<bool> has_left_;  ///< by cluxel
   ChangeGroups groups_;
 };
 

@@ -62,10 +62,11 @@ struct ChangedCluxels {
 /// Of the rays near the places of what is gone, so many may end before them for each that passes.
 inline constexpr double kMostStopped = 0.75;
 
-/// Connected clusters of five or more cluxels that changed alike, each ascending, in the order of their first cluxel. A
-/// cluster is dropped when the rays may have missed a thing that is still there. Of the scans while it was there, those
-/// do not count that hit nothing in and around it and saw through five of its cluxels, nor those of visits that saw it
-/// away (visitsWithoutIt): it was away for a while.
+/// Connected clusters of five or more cluxels that changed alike, each ascending, in the order of their first cluxel.
+/// Cluxels that rays of a visit passed after the last visit that hit them do not count: they belong to a thing that had
+/// left by the end of its time, beside which another may stand. A cluster is dropped when the rays may have missed a
+/// thing that is still there. Of the scans while it was there, those do not count that hit nothing in and around it and
+/// saw through five of its cluxels, nor those of visits that saw it away (visitsWithoutIt): it was away for a while.
 /// - Each scan that passed a cluxel adds log((1 - p) / 0.95), where p is the share of hits in and around the cluster
 ///   while the thing was there: on average of its cluxels the sum must be -3.5 or less, so that a crown needs more
 ///   scans than a car.

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <map>
+#include <set>
 #include <unordered_map>
 #include <utility>
 
@@ -128,16 +130,17 @@ class Things {
 
   /// Names the thing after the object that most of its cluxels belong to.
   void addThing(std::vector<std::uint32_t> cluxels, const Eigen::AlignedBox3d& box, const VotesOfTimes& votes) {
-    if (cluxels.empty() || isAwayAtEnd(votes[time_])) return;
+    if (cluxels.empty()) return;
     ChangedThing thing{std::move(cluxels), std::nullopt, false, box, visitsWithIt(votes[time_])};
     std::map<std::uint32_t, std::size_t> counts;
     for (const std::uint32_t cluxel : thing.cluxels) ++counts[object_of_cluxel_.at(cluxel)];
     const auto most = std::max_element(counts.begin(), counts.end(),
                                        [](const auto& a, const auto& b) { return a.second < b.second; });
+    const ObjectStates* states = most->first == mapping::kNoObject ? nullptr : statesOf(most->first);
+    if (isAwayAtEnd(votes[time_])) return;
     if (most->first != mapping::kNoObject) {
       thing.object = most->first;
       const auto stable = survey_.stable_of_object.find(most->first);
-      const ObjectStates* states = statesOf(most->first);
       const bool is_gone_as_whole = states == nullptr || stateAtOtherTime(*states) == PresenceState::Absent;
       thing.is_part = (stable != survey_.stable_of_object.end() && stable->second > most->second) || !is_gone_as_whole;
       if (states != nullptr && isHiddenPart(*states, votes[1 - time_])) return;
@@ -145,10 +148,15 @@ class Things {
     things_.push_back(std::move(thing));
   }
 
-  /// Nothing when its cluxels tell a change.
+  /// Nothing when its cluxels tell a change: when one is named after it, or has half of its cluxels.
   void addWhole(const WholeObject& whole) {
-    const auto isOfIt = [&](const ChangedThing& thing) { return thing.object == whole.object; };
-    if (std::none_of(things_.begin(), things_.end(), isOfIt))
+    std::set<std::uint32_t> told;
+    for (const ChangedThing& thing : things_) {
+      if (thing.object == whole.object) return;
+      std::set_intersection(thing.cluxels.begin(), thing.cluxels.end(), whole.cluxels.begin(), whole.cluxels.end(),
+                            std::inserter(told, told.end()));
+    }
+    if (2 * told.size() < whole.cluxels.size())
       things_.push_back({whole.cluxels, whole.object, false, whole.box, whole.visits});
   }
 

@@ -32,14 +32,19 @@ bool sawThroughAll(std::span<const perception::ScanVotes> votes, const perceptio
 
 ObjectStates statesOf(std::uint32_t object, std::span<const perception::ScanVotes> votes, const Visits& visits) {
   constexpr perception::PresenceParams kParams;
-  const auto later = std::find_if(votes.begin(), votes.end(),
-                                  [&](const auto& vote) { return visits.isAfter(visits.at(vote.time_s)); });
-  const auto before = votes.first(static_cast<std::size_t>(later - votes.begin())),
-             after = votes.subspan(before.size());
+  std::vector<std::uint32_t> of_votes;
+  for (const perception::ScanVotes& vote : votes) of_votes.push_back(visits.at(vote.time_s));
+  const auto later = std::find_if(of_votes.begin(), of_votes.end(), [&](auto visit) { return visits.isAfter(visit); });
+  const auto scans_before = static_cast<std::size_t>(later - of_votes.begin());
+  const auto before = votes.first(scans_before), after = votes.subspan(scans_before);
   const perception::Visibility thing = perception::visibilityOf(votes);
   ObjectStates states;
   states.object = object;
-  states.before = stateAfter(before, thing, kParams), states.after = stateAfter(after, thing, kParams);
+  const std::span all_visits(of_votes);
+  const perception::StateAtEnd at_end_before = stateAtEnd(before, all_visits.first(scans_before), thing, kParams),
+                               at_end_after = stateAtEnd(after, all_visits.subspan(scans_before), thing, kParams);
+  states.before = at_end_before.state, states.log_odds_before = at_end_before.log_odds;
+  states.after = at_end_after.state, states.log_odds_after = at_end_after.log_odds;
   const bool left = states.before == PresenceState::Present && states.after == PresenceState::Absent;
   const bool came = states.before == PresenceState::Absent && states.after == PresenceState::Present;
   if (left || came) {
@@ -47,8 +52,6 @@ ObjectStates statesOf(std::uint32_t object, std::span<const perception::ScanVote
     states.was_away = leftOnALaterVisit(without_it, visits, thing, kParams);
     states.is_all_gone = showPresence(with_it, thing, kParams) && sawThroughAll(without_it, thing);
   }
-  states.log_odds_before = logOddsOfPresence(before, thing.share_of_hits, kParams);
-  states.log_odds_after = logOddsOfPresence(after, thing.share_of_hits, kParams);
   states.visits = visitsWithIt(votesByVisit(votes, visits));
   return states;
 }

@@ -16,7 +16,7 @@ struct ObjectStates {
   std::uint32_t object = 0;  ///< number in MapReader::objects()
   perception::PresenceState before = perception::PresenceState::NotObserved,
                             after = perception::PresenceState::NotObserved;
-  double log_odds_before = 0, log_odds_after = 0;  ///< of "there"
+  double log_odds_before = 0, log_odds_after = 0;  ///< of "there", from the scans that tell the states
   /// Present at the end of one time and absent at that of the other, though it was surely there on an earlier visit of
   /// that other time. Scans of one visit that see through a thin thing do not tell that it left.
   bool was_away = false;

@@ -2,9 +2,11 @@
 // Sets of scans by number.
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <memory>
 
@@ -31,6 +33,22 @@ class ScanNumbers {
     return *this;
   }
   std::size_t size() const { return sizeWithout({}); }
+  /// The smallest number; of a set that is not empty.
+  std::uint32_t first() const {
+    std::uint32_t first = std::numeric_limits<std::uint32_t>::max();
+    forEachWord([&](std::uint32_t number, std::uint64_t word) {
+      first = std::min(first, kBits * number + static_cast<std::uint32_t>(std::countr_zero(word)));
+    });
+    return first;
+  }
+  /// The largest number; of a set that is not empty.
+  std::uint32_t last() const {
+    std::uint32_t last = 0;
+    forEachWord([&](std::uint32_t number, std::uint64_t word) {
+      last = std::max(last, kBits * number + static_cast<std::uint32_t>(std::bit_width(word)) - 1);
+    });
+    return last;
+  }
   /// How many scans are in this set and not in the other.
   std::size_t sizeWithout(const ScanNumbers& other) const {
     std::size_t size = 0;

@@ -36,8 +36,8 @@ void addVote(std::uint32_t visit, const perception::ScanVotes& vote, VisitVotes&
 
 Visits::Visits(std::span<const double> times_s, double since_s) : since_s_(since_s) {
   for (std::size_t i = 0; i < times_s.size(); ++i) {
-    const bool begins =
-        i == 0 || times_s[i] - times_s[i - 1] > kPauseOfVisits_s || (times_s[i - 1] < since_s && times_s[i] >= since_s);
+    const bool begins = i == 0 || times_s[i] - times_s[i - 1] >= kPauseOfVisits_s ||
+                        (times_s[i - 1] < since_s && times_s[i] >= since_s);
     if (begins) begins_s_.push_back(times_s[i]);
     of_scan_.push_back(static_cast<std::uint32_t>(begins_s_.size() - 1));
   }
@@ -85,7 +85,8 @@ std::vector<std::uint32_t> visitsWithoutIt(const VisitVotes& votes) {
 }
 
 bool isAwayAtEnd(const VisitVotes& votes) {
-  return stateAfter(votes.votes, perception::visibilityOf(votes.votes), kPresence) == perception::PresenceState::Absent;
+  const perception::Visibility thing = perception::visibilityOf(votes.votes);
+  return stateAtEnd(votes.votes, votes.visits, thing, kPresence).state == perception::PresenceState::Absent;
 }
 
 bool haveCommon(std::span<const std::uint32_t> ascending, std::span<const std::uint32_t> others) {

@@ -12,7 +12,7 @@
 
 namespace cluxel::tasks {
 
-/// Scans with a longer pause between them belong to different visits.
+/// Scans with such a pause between them, or a longer one, belong to different visits.
 inline constexpr double kPauseOfVisits_s = 1800;
 
 /// The visits of scans with a time and a pose. A visit ends where the times that are compared meet.
