@@ -102,5 +102,24 @@ TEST(StoredTerms, SharesOneCommitAmongReadersOfManyThreads) {
   EXPECT_EQ(std::set<std::uint64_t>(sums.begin(), sums.end()).size(), 1U);
 }
 
+TEST(StoredTerms, FindsTheQuadsOfANumberWhileOtherThreadsCollectTheSameQuads) {
+  constexpr std::size_t kCommits = 10, kQuads = 20'000;
+  auto environment = Environment::temporary();
+  TermId subject = 10;
+  for (std::size_t commit = 1; commit <= kCommits; ++commit) {
+    WriteTransaction transaction = environment->write();
+    QuadWriter writer(transaction);
+    const TermId predicate = writer.intern(Term::iri("http://p")), number = writer.intern(Term::integer(7));
+    for (std::size_t i = 0; i < kQuads; ++i) writer.add(QuadIds{subject++, predicate, number, 0});
+    writer.flush();
+    transaction.commit();
+    std::array<std::size_t, 4> found{};
+    parallelFor(found.size(), 4, [&](std::size_t i) {
+      found[i] = QuadReader(environment->read()).lookup(QuadOrder::Ospg).find(std::array{number}).size();
+    });
+    for (const std::size_t quads : found) ASSERT_EQ(quads, commit * kQuads);
+  }
+}
+
 }  // namespace
 }  // namespace cluxel::rdf

@@ -56,9 +56,11 @@ std::vector<QuadKey> LiteralEntries::of(const QuadPattern& pattern) const {
   };
   const bool has_subject = pattern.s && *pattern.s != kNoTerm, has_object = pattern.o && *pattern.o != kNoTerm;
   if (has_object && !has_subject && numbers_.areApart() && numbers_.isNumber(*pattern.o)) {
-    for (const TermId predicate : numbers_.predicates())
-      for (const QuadKey& key : keysWithin(*numbers_.of(predicate), rangeOf(std::array{predicate, *pattern.o})))
+    for (const TermId predicate : numbers_.predicates()) {
+      const NumberEntries::Keys keys = numbers_.of(predicate);  // another thread may replace the kept ones
+      for (const QuadKey& key : keysWithin(*keys, rangeOf(std::array{predicate, *pattern.o})))
         take(key, QuadOrder::Posg);
+    }
   } else if (has_object && !has_subject) {
     const PageDirectory& posg = snapshot.directory(Table::Posg, transaction_.impl());
     forEachPredicate(transaction_, posg, *pattern.o, [&](Position at, Key128 last) {
