@@ -54,6 +54,12 @@ class PointMap {
     writer.flush();
     transaction.commit();
   }
+  /// A part of the stored index.
+  void putBlock(std::string_view key, std::string_view bytes) {
+    WriteTransaction transaction = environment_->write();
+    transaction.putBlock("geometries", key, bytes);
+    transaction.commit();
+  }
   QuadReader reader() const { return QuadReader(environment_->read()); }
   std::vector<TermId> expected(const QuadReader& reader, int from, int to) const {
     std::vector<TermId> ids;
@@ -142,13 +148,21 @@ TEST(GeometryIndex, IsMadeInMemoryForAMapThatLacksItAndStoredWithTheNextGeometry
 }
 
 TEST(GeometryIndex, IsRefusedWhenItsBytesAreMalformed) {
-  std::mt19937 random(11);
+  for (const char* bytes : {"no tree", ""}) {
+    std::mt19937 random(11);
+    PointMap map(Environment::temporary());
+    map.add(50, random);
+    map.putBlock("run 1", bytes);
+    EXPECT_THROW(map.reader().geometries(), Error) << "'" << bytes << "'";
+  }
+}
+
+TEST(GeometryIndex, IsMadeInMemoryWhenItsHeadIsEmpty) {
+  std::mt19937 random(12);
   PointMap map(Environment::temporary());
   map.add(50, random);
-  WriteTransaction transaction = map.environment().write();
-  transaction.putBlock("geometries", "run 1", "no tree");
-  transaction.commit();
-  EXPECT_THROW(map.reader().geometries(), Error);
+  map.putBlock("head", "");
+  EXPECT_EQ(map.reader().geometries()->madeInMemory(), map.points().size());
 }
 
 TEST(GeometryIndex, IsComparedWithTheMapBoxByBox) {

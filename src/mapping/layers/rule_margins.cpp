@@ -82,7 +82,8 @@ std::optional<RuleNumbers> storedNumbers(const rdf::ReadTransaction& transaction
   RuleNumbers numbers;
   numbers.constants.resize(bytes->size() / sizeof(std::uint64_t) - 1);
   std::memcpy(&numbers.reach_m, bytes->data(), sizeof(double));
-  std::memcpy(numbers.constants.data(), bytes->data() + sizeof(double), bytes->size() - sizeof(double));
+  if (!numbers.constants.empty())
+    std::memcpy(numbers.constants.data(), bytes->data() + sizeof(double), bytes->size() - sizeof(double));
   return numbers;
 }
 
@@ -103,7 +104,8 @@ void storeNumbers(rdf::WriteTransaction& transaction, const rules::RuleSet& rule
   const RuleNumbers numbers = numbersOf(rules);
   std::string bytes(sizeof(double) + numbers.constants.size() * sizeof(std::uint64_t), '\0');
   std::memcpy(bytes.data(), &numbers.reach_m, sizeof(double));
-  std::memcpy(bytes.data() + sizeof(double), numbers.constants.data(), bytes.size() - sizeof(double));
+  if (!numbers.constants.empty())
+    std::memcpy(bytes.data() + sizeof(double), numbers.constants.data(), bytes.size() - sizeof(double));
   transaction.putIfDifferent(tables::kMeta, kNumbersKey, bytes);
 }
 

@@ -36,7 +36,7 @@ IndexHead storedHead(const ReadTransaction& transaction) {
   const auto bytes = transaction.block(kGeometryTable, kIndexHead);
   if (!bytes) return head;
   std::vector<std::uint32_t> words(bytes->size() / sizeof(std::uint32_t));
-  std::memcpy(words.data(), bytes->data(), words.size() * sizeof(std::uint32_t));
+  if (!words.empty()) std::memcpy(words.data(), bytes->data(), words.size() * sizeof(std::uint32_t));
   // An index of a later version is made anew in memory.
   if (words.size() < 3 || words.size() % 2 == 0 || words[0] != kIndexForm) return head;
   head.covered = words[1];
@@ -60,7 +60,7 @@ std::string_view requireRun(const ReadTransaction& transaction, std::uint32_t nu
 
 std::vector<std::uint32_t> copied(std::string_view bytes) {
   std::vector<std::uint32_t> words((bytes.size() + 3) / 4);
-  std::memcpy(words.data(), bytes.data(), bytes.size());
+  if (!bytes.empty()) std::memcpy(words.data(), bytes.data(), bytes.size());
   return words;
 }
 

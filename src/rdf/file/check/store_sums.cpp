@@ -39,7 +39,7 @@ std::vector<std::uint64_t> sumsOfBlock(ReadTransaction::Impl& transaction, TermI
   std::vector<std::uint64_t> sums;
   if (const auto bytes = readBlock(transaction, kTermSumTable, keyOfSums(block))) {
     sums.resize(bytes->size() / sizeof(std::uint64_t));
-    std::memcpy(sums.data(), bytes->data(), sums.size() * sizeof(std::uint64_t));
+    if (!sums.empty()) std::memcpy(sums.data(), bytes->data(), sums.size() * sizeof(std::uint64_t));
   }
   return sums;
 }

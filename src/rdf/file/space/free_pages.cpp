@@ -77,7 +77,7 @@ std::vector<std::uint64_t> freePagesUpTo(std::uint64_t last, const ReadTransacti
     if (commit > last) return;
     const std::size_t before = pages.size(), count = countIn(entry);
     pages.resize(before + count);
-    std::memcpy(pages.data() + before, entry.data() + sizeof count, count * sizeof count);
+    if (count > 0) std::memcpy(pages.data() + before, entry.data() + sizeof count, count * sizeof count);
   });
   std::sort(pages.begin(), pages.end());
   return pages;
