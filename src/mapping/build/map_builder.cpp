@@ -28,6 +28,7 @@
 #include "mapping/inference/sparql_rules.hpp"
 #include "mapping/layers/stored_layers.hpp"
 #include "mapping/map_state.hpp"
+#include "mapping/statements/named_resources.hpp"
 #include "mapping/statements/stated_subjects.hpp"
 #include "mapping/statements/stated_values.hpp"
 #include "mapping/window/semantic_update.hpp"
@@ -270,12 +271,17 @@ BuildReport built(const scan::ScanSet& scans, const MapInputs& inputs, const fs:
       throw Error(ErrorKind::FaultyInput, "operator statement " + statement.id().hex() + ": " + fault.what());
     }
   }
-  const auto about_objects = std::count_if(params.statements.begin(), params.statements.end(),
-                                           [](const Quad& quad) { return namesObject(quad.subject); });
+  std::size_t about_objects = 0;
+  for (const Quad& quad : params.statements) {
+    if (!namesObject(quad.subject)) continue;
+    requireStatableOfUnknown(quad, parsed.rules.catalogue);
+    ++about_objects;
+  }
   if (about_objects > 0)
-    sink.note(std::to_string(about_objects) +
-              " quads are about objects by their names, which only a map knows: they change no object in a build; load "
-              "the file into the finished map instead");
+    sink.note(
+        std::to_string(about_objects) +
+        " quads are about objects by their names, which only a map knows: they change no object, now or later. To "
+        "state them of objects, build without them, and load them into the finished map");
   WorkFile work(file, complete.hash().hex(), params.force);
   if (!params.refine_poses) noteDoubtfulPoses(scans, params.threads, sink);
   const scan::ScanSet posed = params.refine_poses ? withRefinedPoses(scans, params.threads, sink) : scans;

@@ -13,6 +13,7 @@
 #include "mapping/facts/map_history.hpp"
 #include "mapping/facts/semantic_layer.hpp"
 #include "mapping/map_state.hpp"
+#include "mapping/statements/named_resources.hpp"
 #include "mapping/statements/stated_subjects.hpp"
 #include "mapping/statements/stated_values.hpp"
 #include "mapping/statements/statement_history.hpp"
@@ -55,10 +56,10 @@ bool takeNewStatements(rdf::WriteTransaction& transaction, const rules::ClassCat
 
 }  // namespace
 
-void inferAfterUpdate(rdf::WriteTransaction& transaction, ProgressSink& sink, const rdf::InferenceCheck& check,
-                      const MapUpdateParams& params) {
+void inferAfterUpdate(rdf::WriteTransaction& transaction, const std::set<rdf::QuadIds>& before, ProgressSink& sink,
+                      const rdf::InferenceCheck& check, const MapUpdateParams& params) {
   const ParsedInputs parsed = parseInputs(storedInputs(transaction));
-  anchorStatedObjects(transaction, parsed, sink);
+  anchorStatedObjects(transaction, parsed, before, sink);
   const bool has_news = takeNewStatements(transaction, parsed.rules.catalogue, params.author, sink);
   if (!parsed.rules.asks_map && !has_news) return inferFacts(transaction, parsed.inputs, sink, check);
   const double started_s = secondsNow();
@@ -87,10 +88,11 @@ sparql::UpdateReport updateMap(const std::filesystem::path& file, const std::str
                                                 ": is a map, of which only the operator's statements may be written; "
                                                 "other graphs can only be written in a store that was not made by a "
                                                 "build");
+  const std::set<rdf::QuadIds> before = is_map ? quadsThatNameResources(transaction) : std::set<rdf::QuadIds>();
   const sparql::UpdateReport report = runUpdate(transaction, update, options);
   if (is_map && report.inserted + report.deleted > 0) {
     const rdf::FlushPoll poll(transaction, [&check] { check(0); });
-    inferAfterUpdate(transaction, sink, check, params);
+    inferAfterUpdate(transaction, before, sink, check, params);
     check(0);
   }
   transaction.commit();

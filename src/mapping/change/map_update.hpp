@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <set>
 #include <string>
 
 #include "cluxel/progress.hpp"
@@ -28,8 +29,9 @@ sparql::UpdateReport updateMap(const std::filesystem::path& file, const std::str
                                const sparql::UpdateOptions& options, ProgressSink& sink,
                                const MapUpdateParams& params = {});
 
-/// Computes again what follows from the operator's statements of a map.
-void inferAfterUpdate(rdf::WriteTransaction& transaction, ProgressSink& sink, const rdf::InferenceCheck& check = {},
-                      const MapUpdateParams& params = {});
+/// Computes again what follows from the operator's statements of a map. `before`: quadsThatNameResources() before the
+/// update; those that the update added are anchored.
+void inferAfterUpdate(rdf::WriteTransaction& transaction, const std::set<rdf::QuadIds>& before, ProgressSink& sink,
+                      const rdf::InferenceCheck& check = {}, const MapUpdateParams& params = {});
 
 }  // namespace cluxel::mapping

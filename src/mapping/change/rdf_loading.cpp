@@ -2,10 +2,13 @@
 // Statements go from the parser to the store one by one.
 #include "mapping/change/rdf_loading.hpp"
 
+#include <set>
+
 #include "cluxel/error.hpp"
 #include "mapping/build/work_file.hpp"
 #include "mapping/change/map_update.hpp"
 #include "mapping/map_state.hpp"
+#include "mapping/statements/named_resources.hpp"
 #include "rdf/file/map_replacement.hpp"
 #include "rdf/io/rdf_io.hpp"
 #include "rdf/vocabulary.hpp"
@@ -85,6 +88,7 @@ RdfLoadReport loadRdfFiles(const fs::path& store, const std::vector<fs::path>& f
   if (is_map && own.graph.empty()) own.graph = rdf::vocabulary::kGraphOperator;
   const rdf::QuadReader reader(transaction);
   const std::uint64_t before = reader.size();
+  const std::set<rdf::QuadIds> named_before = is_map ? quadsThatNameResources(transaction) : std::set<rdf::QuadIds>();
   RdfLoadReport report;
   rdf::QuadWriter writer(transaction);
   for (const fs::path& file : files) {
@@ -92,7 +96,7 @@ RdfLoadReport loadRdfFiles(const fs::path& store, const std::vector<fs::path>& f
     writer.flush();
   }
   report.added = reader.size() - before;
-  if (is_map && report.added > 0) inferAfterUpdate(transaction, sink, {}, {.operation = "load"});
+  if (is_map && report.added > 0) inferAfterUpdate(transaction, named_before, sink, {}, {.operation = "load"});
   transaction.commit();
   made.keep();
   return report;

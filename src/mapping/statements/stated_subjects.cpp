@@ -5,10 +5,10 @@
 #include <set>
 
 #include "cluxel/error.hpp"
-#include "mapping/build/operator_statements.hpp"
 #include "mapping/change/map_things.hpp"
 #include "mapping/change/statement_change.hpp"
 #include "mapping/layers/stored_layers.hpp"
+#include "mapping/statements/named_resources.hpp"
 #include "mapping/statements/stated_values.hpp"
 #include "rdf/map_iris.hpp"
 
@@ -61,47 +61,65 @@ Statement statementOf(const Quad& quad, StatedObjects::Anchor anchor, const rule
                       {},
                       std::move(anchor.class_iri)};
   requireStatable(statement, classes);
+  if (is_type && !statement.class_iri.empty())
+    throw Error(ErrorKind::InvalidArgument,
+                "it is one object over all of the map: another class would change all of it; state other properties");
   return statement;
+}
+
+/// Calls `check`, whose errors then name the subject.
+template <typename Check>
+auto aboutSubject(const Quad& quad, const Check& check) {
+  try {
+    return check();
+  } catch (const Error& fault) {
+    throw Error(fault.kind(), "what is stated of <" + quad.subject.text + ">: " + fault.what());
+  }
 }
 
 }  // namespace
 
-bool namesObject(const Term& subject) {
-  return subject.kind == TermKind::Iri &&
-         (subject.text.starts_with(rdf::mapIri("object", "")) || subject.text.starts_with(rdf::mapIri("thing", "")));
+void requireStatableOfUnknown(const Quad& quad, const rules::ClassCatalogue& classes) {
+  if (quad.predicate.text != rdf::vocabulary::rdf("type"))
+    return aboutSubject(quad, [&] { requireStatable(quad.predicate.text); });
+  if (quad.object.kind == TermKind::Iri && isClassOfObjects(quad.object.text, classes))
+    throw Error(ErrorKind::NotFound, "<" + quad.subject.text + "> is no object that the map knows: its class <" +
+                                         quad.object.text + "> cannot be stated before the map has the object");
 }
 
-void anchorStatedObjects(rdf::WriteTransaction& transaction, const ParsedInputs& parsed, ProgressSink& sink) {
-  std::vector<Quad> about_objects;
-  for (Quad& quad : operatorStatements(rdf::QuadReader(static_cast<const rdf::ReadTransaction&>(transaction))))
-    if (namesObject(quad.subject)) about_objects.push_back(std::move(quad));
-  if (about_objects.empty()) return;
+void anchorStatedObjects(rdf::WriteTransaction& transaction, const ParsedInputs& parsed,
+                         const std::set<rdf::QuadIds>& before, ProgressSink& sink) {
+  const auto& now = static_cast<const rdf::ReadTransaction&>(transaction);
+  std::set<rdf::QuadIds> stated = quadsThatNameResources(now);
+  std::erase_if(stated, [&](const rdf::QuadIds& quad) { return before.contains(quad); });
+  if (stated.empty()) return;
+  noteNamesThatChange(now, stated, sink);
+  const rdf::QuadReader reader(now);
   StatedObjects objects(transaction, parsed);
   rdf::QuadWriter writer(transaction);
   std::size_t anchored = 0;
   std::set<std::string> unknown;
-  for (const Quad& quad : about_objects) {
+  for (const rdf::QuadIds& ids : stated) {
+    const Quad quad{reader.termOf(ids.s), reader.termOf(ids.p), reader.termOf(ids.o), reader.termOf(ids.g)};
+    if (!namesObject(quad.subject)) continue;
     auto anchor = objects.anchorOfIri(quad.subject.text);
     if (!anchor) {
+      requireStatableOfUnknown(quad, parsed.rules.catalogue);
       unknown.insert(quad.subject.text);
       continue;
     }
-    const Statement statement = statementOf(quad, *std::move(anchor), parsed.rules.catalogue);
-    if (statement.kind == StatementKind::Is && !statement.class_iri.empty())
-      throw Error(ErrorKind::InvalidArgument,
-                  "<" + quad.subject.text +
-                      "> is one object over all of the map: another class would change all of it; state other "
-                      "properties");
-    writer.remove(rdf::QuadIds{writer.intern(quad.subject), writer.intern(quad.predicate), writer.intern(quad.object),
-                               writer.intern(quad.graph)});
-    for (const Quad& stated : quadsOf(statement)) writer.add(stated);
+    const Statement statement =
+        aboutSubject(quad, [&] { return statementOf(quad, *std::move(anchor), parsed.rules.catalogue); });
+    writer.remove(ids);
+    for (const Quad& part : quadsOf(statement)) writer.add(part);
     ++anchored;
   }
   writer.flush();
   if (!unknown.empty())
     sink.note(*unknown.begin() +
               (unknown.size() > 1 ? " and " + std::to_string(unknown.size() - 1) + " more are" : " is") +
-              " no object that this map has or had: what is stated of it changes no object, but queries find it");
+              " no object that this map has or had: what is stated of it changes no object, now or later, but queries "
+              "find it");
   if (anchored > 0) sink.note(std::to_string(anchored) + " statements about objects are anchored to their points");
 }
 

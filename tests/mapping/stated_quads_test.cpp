@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+// What quads of an update mean follows from the map on which it is made. Names in them that change are noted.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "cluxel/error.hpp"
+#include "mapping/build/operator_statements.hpp"
+#include "mapping/change/map_change.hpp"
+#include "mapping/change/map_update.hpp"
+#include "mapping/change/statement_change.hpp"
+#include "mapping/small_campus.hpp"
+#include "rdf/file/map_replacement.hpp"
+#include "rdf/map_iris.hpp"
+#include "sparql/query_engine.hpp"
+
+namespace cluxel::mapping {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using testing::Not;
+
+const std::string kInOperator = "GRAPH <" + std::string(rdf::vocabulary::kGraphOperator) + "> ";
+const std::string kInHistory = "GRAPH <" + std::string(rdf::vocabulary::kGraphHistory) + "> ";
+const std::string kLabel = "<" + rdf::vocabulary::rdfs("label") + ">";
+const std::string kUnder = "<http://example.org/under>";
+
+class Notes : public ProgressSink {
+ public:
+  void note(std::string_view text) override { all.append(text).append("\n"); }
+  std::string all;
+};
+
+class StatedQuads : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    campus = new SmallCampus({.seed = 5, .stops = 3, .size_m = 45, .points_per_stop = 2500});
+    inputs = new MapInputs(shippedInputs());
+    built = new ScratchFolder;
+    buildMap(scans(0, 2), *inputs, built->path() / "two.clx", {}, silence());
+    fs::copy_file(built->path() / "two.clx", built->path() / "three.clx");
+    extendMap(built->path() / "three.clx", scans(2, 3), {}, silence());
+  }
+  static void TearDownTestSuite() {
+    delete campus;
+    delete inputs;
+    delete built;
+  }
+  void SetUp() override { fs::copy_file(built->path() / "two.clx", map()); }
+
+  static ScanSet scans(std::size_t first, std::size_t end) {
+    return scansOf({campus->files().begin() + static_cast<std::ptrdiff_t>(first),
+                    campus->files().begin() + static_cast<std::ptrdiff_t>(end)});
+  }
+  fs::path map() const { return folder.path() / "map.clx"; }
+
+  static std::set<std::string> objectsOf(const fs::path& file) {
+    const MapReader reader(file);
+    std::set<std::string> iris;
+    for (const rules::SemanticObject& object : reader.objects())
+      if (!object.is_class_wide) iris.insert(rdf::iriOfObject(object.id));
+    return iris;
+  }
+  /// An object that only one of two maps has.
+  static std::string objectOnlyIn(const fs::path& file, const fs::path& other) {
+    const std::set<std::string> others = objectsOf(other);
+    for (const std::string& iri : objectsOf(file))
+      if (!others.contains(iri)) return iri;
+    throw std::runtime_error("both maps have the same objects");
+  }
+  /// The map of the same scans, built from scratch with the statements that the map has.
+  std::string fromScratch(std::size_t scan_count) const {
+    BuildParams params;
+    params.statements = operatorStatements(MapReader(map()).quads());
+    const ScratchFolder other;
+    buildMap(scans(0, scan_count), *inputs, other.path() / "map.clx", params, silence());
+    return canonicalText(other.path() / "map.clx");
+  }
+  std::string update(const std::string& text) const {
+    Notes notes;
+    updateMap(map(), text, {}, notes);
+    return notes.all;
+  }
+  std::string faultOf(const std::string& text) const {
+    try {
+      update(text);
+      return "";
+    } catch (const Error& fault) {
+      return fault.what();
+    }
+  }
+  bool holds(const std::string& pattern) const {
+    const MapReader reader(map());
+    return sparql::PreparedQuery(reader.quads(), "ASK { " + pattern + " }").ask();
+  }
+  void updateSomethingElse() const {
+    update("INSERT DATA { <http://example.org/a> <http://example.org/b> 1 }");
+    update("DELETE DATA { " + kInOperator + "{ <http://example.org/a> <http://example.org/b> 1 } }");
+  }
+
+  ScratchFolder folder;
+  inline static SmallCampus* campus = nullptr;
+  inline static MapInputs* inputs = nullptr;
+  inline static ScratchFolder* built = nullptr;
+};
+
+TEST_F(StatedQuads, OfAnObjectThatComesLaterMeanTheSameBeforeAndAfterIt) {
+  const std::string object = "<" + objectOnlyIn(built->path() / "three.clx", map()) + ">";
+  EXPECT_THAT(update("INSERT DATA { " + object + " " + kLabel + " \"later\" }"),
+              HasSubstr("changes no object, now or later"));
+  extendMap(map(), scans(2, 3), {}, silence());
+  const std::string extended = canonicalText(map());
+  EXPECT_TRUE(extended == fromScratch(3));
+  updateSomethingElse();
+  EXPECT_TRUE(canonicalText(map()) == extended) << "an update changed what another had stated";
+  EXPECT_TRUE(knownStatements(MapReader(map()).quads()).empty());
+  update("DELETE DATA { " + kInOperator + "{ " + object + " " + kLabel + " \"later\" } }");
+  update("INSERT DATA { " + object + " " + kLabel + " \"later\" }");
+  EXPECT_EQ(knownStatements(MapReader(map()).quads()).size(), 1U) << "stated again of the object that is there now";
+  EXPECT_TRUE(canonicalText(map()) == fromScratch(3));
+}
+
+TEST_F(StatedQuads, OfAnObjectThatComesLaterCannotContradictIt) {
+  const std::string before = canonicalText(map());
+  const std::string object = objectOnlyIn(built->path() / "three.clx", map());
+  EXPECT_THAT(faultOf("INSERT DATA { <" + object + "> <" + rdf::vocabulary::clx("height") + "> 5 }"),
+              testing::AllOf(HasSubstr(object), HasSubstr("is computed by the map")));
+  EXPECT_THAT(faultOf("INSERT DATA { <" + object + "> a <" + rdf::vocabulary::clx("Person") + "> }"),
+              testing::AllOf(HasSubstr(object), HasSubstr("cannot be stated before the map has the object")));
+  EXPECT_TRUE(canonicalText(map()) == before);
+  BuildParams params;
+  params.statements = {{Term::iri(object), Term::iri(rdf::vocabulary::clx("height")), Term::literal("5"), {}}};
+  EXPECT_THROW(buildMap(scans(0, 2), *inputs, folder.path() / "other.clx", params, silence()), Error);
+}
+
+/// As a program of an earlier version left them.
+TEST_F(StatedQuads, ThatStandInTheMapDoNotBlockOtherUpdates) {
+  {
+    rdf::WriteTransaction transaction = rdf::writeMap(map());
+    addOperatorStatements(transaction, {{Term::iri(*objectsOf(map()).begin()),
+                                         Term::iri(rdf::vocabulary::clx("height")),
+                                         Term::literal("5", rdf::vocabulary::xsd("integer")),
+                                         {}}});
+    transaction.commit();
+  }
+  const std::string before = canonicalText(map());
+  updateSomethingElse();
+  EXPECT_TRUE(canonicalText(map()) == before);
+}
+
+TEST_F(StatedQuads, AsValuesDoNotFollowTheirObjectsButThingsDo) {
+  const std::string changing = objectOnlyIn(map(), built->path() / "three.clx");
+  const std::string subject = *objectsOf(map()).begin();
+  const std::string notes = update("INSERT DATA { <" + subject + "> " + kUnder + " <" + changing + "> }");
+  EXPECT_THAT(notes, HasSubstr("<" + changing + "> is a name that changes"));
+  const std::size_t at = notes.find("<" + rdf::mapIri("thing", ""));
+  ASSERT_NE(at, std::string::npos) << notes;
+  const std::string thing = notes.substr(at, notes.find('>', at) + 1 - at);
+  EXPECT_THAT(update("INSERT DATA { <" + subject + "> " + kUnder + " " + thing + " }"), Not(HasSubstr("as values")));
+  extendMap(map(), scans(2, 3), {}, silence());
+  EXPECT_TRUE(holds("?s " + kUnder + " ?thing . ?object a ?class . " + kInHistory +
+                    "{ ?object <http://www.w3.org/ns/prov#specializationOf> ?thing }"));
+  EXPECT_FALSE(holds("?s " + kUnder + " ?object . " + "?object <" + rdf::vocabulary::clx("confidence") + "> ?c"));
+}
+
+TEST_F(StatedQuads, OfPartsAreNoted) {
+  const std::string part = [&] {
+    const MapReader reader(map());
+    rdf::QuadCursor cursor = reader.quads().scan(
+        {.s = {}, .p = reader.quads().idOf(Term::iri(rdf::vocabulary::clx("hasPart"))), .o = {}, .g = {}});
+    rdf::QuadIds quad;
+    if (!cursor.next(quad)) throw std::runtime_error("no object has a part");
+    return toNTriples(reader.quads().termOf(quad.o));
+  }();
+  EXPECT_THAT(update("INSERT DATA { " + part + " " + kLabel + " \"old trunk\" }"),
+              HasSubstr(part + " is no object: what is stated of parts"));
+}
+
+}  // namespace
+}  // namespace cluxel::mapping
