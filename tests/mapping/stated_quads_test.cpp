@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What quads of an update mean follows from the map on which it is made. Names in them that change are noted.
+// What quads of an update mean follows from the map on which it is made. Names in them that change are noted, and what
+// the map computes is refused.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -11,6 +12,7 @@
 #include "mapping/change/map_update.hpp"
 #include "mapping/change/statement_change.hpp"
 #include "mapping/small_campus.hpp"
+#include "mapping/statements/stated_values.hpp"
 #include "rdf/file/map_replacement.hpp"
 #include "rdf/map_iris.hpp"
 #include "sparql/query_engine.hpp"
@@ -176,6 +178,50 @@ TEST_F(StatedQuads, OfPartsAreNoted) {
   }();
   EXPECT_THAT(update("INSERT DATA { " + part + " " + kLabel + " \"old trunk\" }"),
               HasSubstr(part + " is no object: what is stated of parts"));
+}
+
+/// The properties that graph `observed` gives to resources of a kind.
+std::set<std::string> propertiesOf(const rdf::QuadReader& quads, const std::string& kind) {
+  const std::string begin = rdf::mapIri(kind, "");
+  const auto observed = quads.idOf(Term::iri(rdf::vocabulary::kGraphObserved));
+  std::set<std::string> properties;
+  rdf::QuadCursor cursor = quads.scan({.s = {}, .p = {}, .o = {}, .g = observed});
+  for (rdf::QuadIds quad; cursor.next(quad);) {
+    const std::string subject = quads.termOf(quad.s).text;
+    if (subject.starts_with(begin) && subject.find('/', begin.size()) == std::string::npos)
+      properties.insert(quads.termOf(quad.p).text);
+  }
+  return properties;
+}
+
+/// The datatype properties of `domain` in the ontology.
+std::set<std::string> attributesOf(const rdf::QuadReader& quads, const std::string& domain) {
+  const auto of = quads.idOf(Term::iri(domain));
+  const auto has_domain = quads.idOf(Term::iri(rdf::vocabulary::rdfs("domain")));
+  const auto type = quads.idOf(Term::iri(rdf::vocabulary::rdf("type")));
+  const auto attribute = quads.idOf(Term::iri("http://www.w3.org/2002/07/owl#DatatypeProperty"));
+  if (!of || !has_domain || !type || !attribute) throw std::runtime_error("the ontology lacks attributes");
+  std::set<std::string> properties;
+  rdf::QuadCursor cursor = quads.scan({.s = {}, .p = *has_domain, .o = *of, .g = {}});
+  for (rdf::QuadIds quad; cursor.next(quad);) {
+    rdf::QuadCursor typed = quads.scan({.s = quad.s, .p = *type, .o = *attribute, .g = {}});
+    if (rdf::QuadIds ignored; typed.next(ignored)) properties.insert(quads.termOf(quad.s).text);
+  }
+  return properties;
+}
+
+TEST_F(StatedQuads, StateNothingThatTheMapTellsOfObjectsAndStatements) {
+  const std::string object = *objectsOf(map()).begin();
+  update("INSERT DATA { <" + object + "> a <" + rdf::vocabulary::clx("StreetSign") + "> }");
+  const MapReader reader(map());
+  std::set<std::string> told = propertiesOf(reader.quads(), "object");
+  EXPECT_GE(told.size(), 20U);
+  told.merge(attributesOf(reader.quads(), rdf::vocabulary::clx("Object")));
+  EXPECT_TRUE(told.contains(rdf::vocabulary::clx("porosity"))) << "which only barriers have";
+  const std::set<std::string> of_statements = propertiesOf(reader.quads(), "statement");
+  EXPECT_TRUE(of_statements.contains(rdf::vocabulary::clx("contradictsRules")));
+  told.insert(of_statements.begin(), of_statements.end());
+  for (const std::string& property : told) EXPECT_THROW(requireStatable(property), Error) << property;
 }
 
 }  // namespace

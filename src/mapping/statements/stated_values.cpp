@@ -18,7 +18,7 @@ namespace {
 
 using rdf::vocabulary::clx;
 
-constexpr std::array<std::string_view, 29> kComputed{"confidence",
+constexpr std::array<std::string_view, 32> kComputed{"confidence",
                                                      "rule",
                                                      "x",
                                                      "y",
@@ -41,12 +41,15 @@ constexpr std::array<std::string_view, 29> kComputed{"confidence",
                                                      "lastSeen",
                                                      "seenEmpty",
                                                      "seenThrough",
+                                                     "porosity",
+                                                     "rayCount",
                                                      "hasPart",
                                                      "hasPrimitive",
                                                      "near",
                                                      "appliesTo",
                                                      "rulesSay",
-                                                     "statementEffect"};
+                                                     "statementEffect",
+                                                     "contradictsRules"};
 
 /// Classes of what is no object.
 constexpr std::array<std::string_view, 7> kOtherThings{"Part",        "Place", "Primitive", "Cluxel",
