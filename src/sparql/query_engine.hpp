@@ -36,6 +36,7 @@ struct QueryBudget {
   std::uint64_t max_memory_bytes = 4ull << 30;  ///< held by the query, its plan and its results
   /// Called every few thousand rows in the thread of the query. What it throws ends the query.
   std::function<void()> poll = {};
+  bool is_of_update = false;  ///< errors then say that nothing was changed, not that there is no result
 };
 
 struct QueryOptions {

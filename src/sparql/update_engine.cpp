@@ -281,7 +281,9 @@ void UpdateRun::perform(const ast::Modify& modify) {
 
 }  // namespace
 
-UpdateReport runUpdate(rdf::WriteTransaction& transaction, std::string_view text, const UpdateOptions& options) {
+UpdateReport runUpdate(rdf::WriteTransaction& transaction, std::string_view text, const UpdateOptions& given) {
+  UpdateOptions options = given;
+  options.query.budget.is_of_update = true;
   SparqlParseOptions parse_options;
   parse_options.file = options.query.source_name;
   parse_options.base_iri = options.query.base_iri;

@@ -165,6 +165,8 @@ TEST(Budgets, CoverUpdates) {
       FAIL() << "no error";
     } catch (const Error& error) {
       EXPECT_EQ(error.kind(), ErrorKind::BudgetExceeded) << error.what();
+      EXPECT_TRUE(std::string(error.what()).starts_with("update: ")) << error.what();
+      EXPECT_NE(std::string(error.what()).find("nothing was changed"), std::string::npos) << error.what();
     }
   }
 }

@@ -108,6 +108,7 @@ sparql::QueryOptions ruleOptions(const NamedText& rule, const rdf::InferenceChec
   if (check) {
     options.budget.poll = [check] { check(0); };
     options.budget.max_memory_bytes = check.max_memory_bytes;
+    options.budget.is_of_update = true;
   }
   return options;
 }

@@ -37,9 +37,10 @@ void Guard::check() {
 }
 
 void Guard::refuse(const char* what) const {
-  throw Error(ErrorKind::BudgetExceeded,
-              std::string("query: its budget of ") + what +
-                  " is exceeded; no result is returned. Narrow the query or raise the budget");
+  const std::string request = budget_.is_of_update ? "update" : "query";
+  throw Error(ErrorKind::BudgetExceeded, request + ": its budget of " + what + " is exceeded; " +
+                                             (budget_.is_of_update ? "nothing was changed" : "no result is returned") +
+                                             ". Narrow the " + request + " or raise the budget");
 }
 
 }  // namespace cluxel::sparql
