@@ -54,7 +54,8 @@ std::string remedyFor(const rdf::QuadReader& reader, const std::set<std::string>
   for (const std::string& iri : values) {
     const auto object = hashIn(iri, "object");
     const std::vector<Thing> things = object ? lookup.thingsOf(*object) : std::vector<Thing>();
-    if (!things.empty()) return ". A thing keeps its name: state <" + things.front().iri + "> instead of <" + iri + ">";
+    if (!things.empty())
+      return ". The thing of an object keeps its name: state <" + things.front().iri + "> instead of <" + iri + ">";
   }
   return "";
 }
@@ -95,8 +96,11 @@ void noteNamesThatChange(const rdf::ReadTransaction& transaction, const std::set
               ": what is stated of parts, primitives and observations stays with their names, which change with their "
               "members. State it of their objects, which it follows");
   if (!values.empty())
-    sink.note("as values, " + namesWith(values, "is a name that changes", "are names that change") +
-              " with the members of what it names; the statement keeps the old name then" + remedyFor(reader, values));
+    sink.note("the value " +
+              namesWith(values, "is the name of an object, or of a piece of one",
+                        "are names of objects, or of pieces of them") +
+              ". Such names change with the points of what they name, and values do not follow them" +
+              remedyFor(reader, values));
 }
 
 }  // namespace cluxel::mapping

@@ -93,7 +93,6 @@ void anchorStatedObjects(rdf::WriteTransaction& transaction, const ParsedInputs&
   std::set<rdf::QuadIds> stated = quadsThatNameResources(now);
   std::erase_if(stated, [&](const rdf::QuadIds& quad) { return before.contains(quad); });
   if (stated.empty()) return;
-  noteNamesThatChange(now, stated, sink);
   const rdf::QuadReader reader(now);
   StatedObjects objects(transaction, parsed);
   rdf::QuadWriter writer(transaction);
@@ -115,6 +114,7 @@ void anchorStatedObjects(rdf::WriteTransaction& transaction, const ParsedInputs&
     ++anchored;
   }
   writer.flush();
+  noteNamesThatChange(now, stated, sink);
   if (!unknown.empty())
     sink.note(*unknown.begin() +
               (unknown.size() > 1 ? " and " + std::to_string(unknown.size() - 1) + " more are" : " is") +
