@@ -207,6 +207,27 @@ TEST_F(Program, ANoteBeginsOnce) {
   EXPECT_EQ(asked.err.find("note: note:"), std::string::npos);
 }
 
+TEST_F(Program, NotesOfAnAnswerAreToldInEveryForm) {
+  const std::string closed = "ask " + path("map.clx").string() + " route from=0,0 to=12,3 width=3.5 ";
+  const Json answer = Json::parse(run(closed + "--json").out);
+  const Json& notes = answer.at("notes");
+  ASSERT_GE(notes.size(), 2U);
+  const std::string first = notes.at(0), second = notes.at(1);
+  ASSERT_EQ(second.substr(0, 2), "  ") << "tables indent lists";
+  const std::string told = "note: " + first + "\nnote: " + second.substr(2) + "\n";
+  const Outcome csv = run(closed + "--format csv"), geojson = run(closed + "--geojson --local");
+  EXPECT_EQ(csv.err.substr(0, told.size()), told);
+  EXPECT_EQ(csv.out, "route,length,cost,climb,steepest,highestStep,narrowest\r\n");
+  EXPECT_EQ(geojson.err, csv.err);
+  EXPECT_EQ(Json::parse(geojson.out).at("notes"), notes);
+  const Outcome table = run(closed), json = run(closed + "--json");
+  EXPECT_NE(table.out.find(first + "\n" + second + "\n"), std::string::npos) << table.out;
+  for (const Outcome& outcome : {csv, geojson, table, json}) EXPECT_EQ(outcome.code, 1);
+  EXPECT_EQ(table.err + json.err, "") << "they are told once";
+  const Outcome inventory = run("inventory " + path("map.clx").string() + " --format csv");
+  EXPECT_EQ(inventory.err.substr(0, 6), "note: ") << inventory.err;
+}
+
 TEST_F(Program, DoctorFindsAByteThatChangedAndNamesNothingInAWholeMap) {
   const Json whole = Json::parse(run("doctor --json " + path("map.clx").string()).out);
   EXPECT_GT(whole.at("blocks"), 10);

@@ -121,6 +121,7 @@ TEST_F(ServeCommand, TasksAnswerAsTheCommandAsk) {
       {"search?for=StreetSign&from=0,0&why=true&format=table", "search for=StreetSign from=0,0 --why"},
       {"reach?from=0,0&minutes=0.2&without=Movable", "reach from=0,0 minutes=0.2 without=Movable --json"},
       {"near_point?radius=5&format=csv", "near_point radius=5 --format csv"},
+      {"near_point?radius=5&format=csv&why=true", "near_point radius=5 --format csv --why"},
       {"costmap?format=geojson&frame=local", "costmap --geojson --local"}};
   for (const auto& [resource, command] : same)
     EXPECT_EQ(shared().get("/tasks/" + resource).body, run("ask " + map + " " + command).out) << resource;

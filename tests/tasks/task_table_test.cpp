@@ -95,32 +95,40 @@ TEST(TaskTable, FaultyValuesAreRefusedByName) {
 
 TEST(QuestionsOfACampus, EveryTaskAnswersInEveryFormatWithTheSameRows) {
   const MapReader& map = CampusMap::shared().map();
-  std::size_t with_reasons = 0;
+  std::size_t with_reasons = 0, placeless = 0;
   for (const Task& task : allTasks()) {
     SCOPED_TRACE(task.name);
     if (task.name == "changes") continue;  // needs two visits: SiteChangesTest
     NamedValues values = requiredOf(task);
     if (task.name == "search" || task.name == "next-view") values.emplace_back("from", placeOfAStop(map));
-    TaskAnswer answer = task.run({map, true, {}}, TaskValues(task.parameters, values));
-    if (answer.columns.empty()) answer.columns = task.columns;
+    const TaskAnswer answer = answerOf(task, {map, true, {}}, TaskValues(task.parameters, values));
     ASSERT_EQ(answer.columns.size(), task.columns.size());
     for (std::size_t c = 0; c < task.columns.size(); ++c) EXPECT_EQ(answer.columns[c].name, task.columns[c].name);
-    std::size_t placed = 0;
+    EXPECT_EQ(answer.has_reasons, task.has_reasons);
+    std::size_t reasons = 0;
     for (const TaskRow& row : answer.rows) {
       EXPECT_EQ(row.cells.size(), task.columns.size());
-      placed += row.shape.kind != TaskShape::Kind::None ? 1 : 0;
+      placeless += row.shape.kind == TaskShape::Kind::None ? 1 : 0;
+      reasons += row.why.empty() ? 0 : row.why.size() - 1;
       with_reasons += row.why.empty() ? 0 : 1;
       EXPECT_TRUE(task.has_reasons || row.why.empty());
     }
     const TaskJson json = TaskJson::parse(answerText(map, answer, AnswerFormat::Json));
     EXPECT_EQ(json.at("rows").size(), answer.rows.size());
-    const TaskJson features = TaskJson::parse(answerText(map, answer, AnswerFormat::GeoJson, ExportFrame::Local));
-    EXPECT_EQ(features.at("features").size(), placed);
+    const TaskJson collection = TaskJson::parse(answerText(map, answer, AnswerFormat::GeoJson, ExportFrame::Local));
+    EXPECT_EQ(collection.value("notes", TaskJson::array()), json.at("notes"));
+    ASSERT_EQ(collection.at("features").size(), answer.rows.size());
+    for (std::size_t i = 0; i < answer.rows.size(); ++i) {
+      const TaskJson &feature = collection["features"][i], &row = json["rows"][i];
+      EXPECT_EQ(feature.at("geometry"), row.value("geometry", TaskJson()));
+      EXPECT_EQ(feature.at("properties").value("why", TaskJson()), row.value("why", TaskJson()));
+    }
     const std::string csv = answerText(map, answer, AnswerFormat::Csv);
-    EXPECT_EQ(static_cast<std::size_t>(std::count(csv.begin(), csv.end(), '\n')), answer.rows.size() + 1);
+    EXPECT_EQ(static_cast<std::size_t>(std::count(csv.begin(), csv.end(), '\n')), answer.rows.size() + 1 + reasons);
     EXPECT_EQ(answerText(map, answer, AnswerFormat::Table).back(), '\n');
   }
   EXPECT_GT(with_reasons, 20U) << "objects and stops tell why";
+  EXPECT_GT(placeless, 5U) << "counts of classes, ground that was not observed";
 }
 
 TEST(QuestionsOfACampus, NumbersAreWrittenAsPeopleReadThem) {
@@ -242,6 +250,18 @@ TEST(TaskAnswer, CsvQuotesAndTablesShortenIris) {
             "a,b\r\n\"x,\"\"y\"\"\",0.3\r\nhttps://w3id.org/cluxel/map/object/1,\r\n");
   EXPECT_EQ(answerText(map, answer, AnswerFormat::Table),
             "a             b [m]\n------------  -----\nx,\"y\"         0.3\nmap:object/1\na note\n");
+}
+
+TEST(TaskAnswer, ReasonsAreAColumnOfCsvWhereTheyWereAskedFor) {
+  const MapReader& map = CampusMap::shared().map();
+  TaskAnswer answer{{{"a", "text", "x"}},
+                    {{{std::string("one")}, {}, {"rule r:", "yes  a, b"}}, {{std::string("two")}}}};
+  answer.has_reasons = true;
+  EXPECT_EQ(answerText(map, answer, AnswerFormat::Csv), "a,why\r\none,\"rule r:\nyes  a, b\"\r\ntwo,\r\n");
+  answer.rows.clear();
+  EXPECT_EQ(answerText(map, answer, AnswerFormat::Csv), "a,why\r\n");
+  answer.has_reasons = false;
+  EXPECT_EQ(answerText(map, answer, AnswerFormat::Csv), "a\r\n");
 }
 
 }  // namespace

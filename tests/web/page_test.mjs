@@ -264,6 +264,9 @@ test('answers are downloaded as CSV and GeoJSON', async () => {
   const { features } = JSON.parse(await saved('GeoJSON')), wanted = programAnswer('trees.rq').rows;
   assert.deepEqual(features.map((feature) => feature.id), wanted.map((row) => row[0].slice(-32)));
   for (const { geometry } of features) assert.deepEqual(geometry.coordinates[0][0], geometry.coordinates[0].at(-1));
+  await ask(open.page, 'SELECT ?n { VALUES ?n { 1 2 } }');
+  assert.deepEqual(JSON.parse(await saved('GeoJSON')).features,
+                   ['1', '2'].map((n) => ({ type: 'Feature', geometry: null, properties: { n } })), 'rows without a place');
 });
 
 test('a measured distance is that of the two points', async () => {

@@ -26,16 +26,16 @@ function ringOf(box: Box): number[][] {
   ]);
 }
 
-/** One feature for each row that names an object. */
+/** One feature for each row; its geometry is null where the row names no object. */
 export function geoJsonOf(answer: Rows, objectOfRow: (row: number) => MapObject | undefined, model: MapModel): string {
-  const features = answer.rows.flatMap((row, i) => {
+  const features = answer.rows.map((row, i) => {
     const object = objectOfRow(i);
-    if (!object) return [];
     const properties = Object.fromEntries(answer.variables.map((name, k) => [name, cellText(row[k])]));
-    return [{
+    if (!object) return { type: 'Feature', geometry: null, properties };
+    return {
       type: 'Feature', id: object.id, geometry: { type: 'Polygon', coordinates: [ringOf(object.box)] },
       properties: { ...properties, class: object.class.label, iri: object.iri },
-    }];
+    };
   });
   return JSON.stringify({
     type: 'FeatureCollection', frame: 'map frame of Cluxel, metres: not longitude and latitude',

@@ -2,6 +2,7 @@
 // `cluxel ask`, `cluxel tasks` and `cluxel inventory`: the tasks that a map answers by name.
 #include "app/command.hpp"
 #include "app/map_condition.hpp"
+#include "base/ascii.hpp"
 #include "cluxel/error.hpp"
 #include "tasks/ask/inventory_task.hpp"
 #include "tasks/ask/task_table.hpp"
@@ -30,13 +31,21 @@ void addAnswerOutput(CLI::App& command, AnswerOutput& output) {
                    "write GeoJSON in metres of the map frame instead of longitude and latitude");
 }
 
+/// On stderr, where the form has no place in which people see them.
+void noteBesideAnswer(const tasks::TaskAnswer& answer, tasks::AnswerFormat format, Session& session) {
+  if (showsNotes(format)) return;
+  for (const std::string& note : answer.notes) session.console.note(trimmed(note));  // tables indent lists
+}
+
 /// Prints, and tells whether the answer is "no" or has no rows.
 ExitCode printAnswer(const mapping::MapReader& map, const tasks::TaskAnswer& answer, const AnswerOutput& output,
                      Session& session) {
   const tasks::ExportFrame frame = output.local ? tasks::ExportFrame::Local : tasks::ExportFrame::LongitudeLatitude;
-  std::string text = answerText(map, answer, formatIn(output, session), frame);
+  const tasks::AnswerFormat format = formatIn(output, session);
+  std::string text = answerText(map, answer, format, frame);
   if (text.ends_with('\n')) text.pop_back();  // print() ends the line
   print(text);
+  noteBesideAnswer(answer, format, session);
   if (answer.is_negative) return ExitCode::NegativeFinding;
   return answer.rows.empty() ? ExitCode::NoRows : ExitCode::Done;
 }
@@ -66,8 +75,7 @@ ExitCode ask(const AskArguments& arguments, Session& session) {
   const tasks::TaskValues values(task.parameters, valuesOf(arguments.values));
   const mapping::MapReader map(arguments.map);
   noteUnfinished(arguments.map, map.isFinished(), arguments.allow_unfinished, session);
-  tasks::TaskAnswer answer = task.run({map, arguments.why, {}}, values);
-  if (answer.columns.empty()) answer.columns = task.columns;
+  const tasks::TaskAnswer answer = answerOf(task, {map, arguments.why, {}}, values);
   if (arguments.why && !task.has_reasons) session.console.note("the task " + task.name + " gives no reasons");
   return printAnswer(map, answer, arguments.output, session);
 }

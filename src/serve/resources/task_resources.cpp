@@ -64,8 +64,7 @@ HttpResponse answerTask(ServedMap& map, const ResourceRequest& asked, const std:
   const tasks::TaskValues values(task.parameters, given);
   LimitedBody body(asked.limits.max_answer_bytes);
   map.withReader([&](const mapping::MapReader& reader) {
-    tasks::TaskAnswer answer = task.run({reader, options.with_reasons, queryOptions(asked.limits)}, values);
-    if (answer.columns.empty()) answer.columns = task.columns;
+    const tasks::TaskAnswer answer = answerOf(task, {reader, options.with_reasons, queryOptions(asked.limits)}, values);
     body.add(answerText(reader, answer, options.format, options.frame));
   });
   return {200, mediaTypeOf(options.format), body.take(), {}};

@@ -83,14 +83,29 @@ std::string tableText(const TaskAnswer& answer) {
   return text;
 }
 
-std::string csvText(const TaskAnswer& answer) {
+std::string csvLine(const std::vector<std::string>& fields) {
+  std::string line;
+  for (std::size_t c = 0; c < fields.size(); ++c) line += (c == 0 ? "" : ",") + csvField(fields[c]);
+  return line + "\r\n";
+}
+
+std::string joinedLines(const std::vector<std::string>& lines) {
   std::string text;
-  const auto addLine = [&](const auto& fieldAt) {
-    for (std::size_t c = 0; c < answer.columns.size(); ++c) text += (c == 0 ? "" : ",") + csvField(fieldAt(c));
-    text += "\r\n";
-  };
-  addLine([&](std::size_t c) { return answer.columns[c].name; });
-  for (const TaskRow& row : answer.rows) addLine([&](std::size_t c) { return cellText(row.cells[c], false); });
+  for (std::size_t i = 0; i < lines.size(); ++i) text += (i == 0 ? "" : "\n") + lines[i];
+  return text;
+}
+
+std::string csvText(const TaskAnswer& answer) {
+  std::vector<std::string> header;
+  for (const QueryColumn& column : answer.columns) header.push_back(column.name);
+  if (answer.has_reasons) header.emplace_back("why");
+  std::string text = csvLine(header);
+  for (const TaskRow& row : answer.rows) {
+    std::vector<std::string> fields;
+    for (std::size_t c = 0; c < answer.columns.size(); ++c) fields.push_back(cellText(row.cells[c], false));
+    if (answer.has_reasons) fields.push_back(joinedLines(row.why));
+    text += csvLine(fields);
+  }
   return text;
 }
 
@@ -120,6 +135,7 @@ AnswerJson ringOf(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Plac
 }
 
 AnswerJson geometryJson(const TaskShape& shape, const PlaceWriter& position) {
+  if (shape.kind == TaskShape::Kind::None) return nullptr;
   AnswerJson places = AnswerJson::array();
   if (shape.kind == TaskShape::Kind::Area) {
     for (std::size_t i = 0; i + 1 < shape.places.size(); i += 2)
@@ -153,12 +169,12 @@ std::string geoJsonText(const mapping::MapReader& map, const TaskAnswer& answer,
   const PlaceWriter position = placesIn(frame, map.inputs());
   AnswerJson collection{{"type", "FeatureCollection"}};
   if (frame == ExportFrame::Local) collection["frame"] = "map frame of Cluxel, metres: not longitude and latitude";
+  if (!answer.notes.empty()) collection["notes"] = answer.notes;
   collection["features"] = AnswerJson::array();
   for (const TaskRow& row : answer.rows)
-    if (row.shape.kind != TaskShape::Kind::None)
-      collection["features"].push_back({{"type", "Feature"},
-                                        {"geometry", geometryJson(row.shape, position)},
-                                        {"properties", propertiesOfRow(answer, row)}});
+    collection["features"].push_back({{"type", "Feature"},
+                                      {"geometry", geometryJson(row.shape, position)},
+                                      {"properties", propertiesOfRow(answer, row)}});
   return collection.dump(1, ' ', false, AnswerJson::error_handler_t::replace) + "\n";
 }
 
@@ -185,6 +201,10 @@ std::string answerText(const mapping::MapReader& map, const TaskAnswer& answer, 
       return geoJsonText(map, answer, frame);
   }
   return {};
+}
+
+bool showsNotes(AnswerFormat format) {
+  return format == AnswerFormat::Table || format == AnswerFormat::Json;
 }
 
 }  // namespace cluxel::tasks

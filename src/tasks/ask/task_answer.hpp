@@ -38,6 +38,7 @@ struct TaskAnswer {
   std::vector<QueryColumn> columns;
   std::vector<TaskRow> rows;
   std::vector<std::string> notes = {};  ///< about the whole answer: why there is no route
+  bool has_reasons = false;             ///< reasons were asked for, and the task gives them
   bool is_negative = false;             ///< the answer is "no", as for a place to which no way leads
 };
 
@@ -45,10 +46,13 @@ enum class AnswerFormat : std::uint8_t { Table, Csv, Json, GeoJson };
 /// By name: table, csv, json, geojson.
 std::optional<AnswerFormat> answerFormatOf(std::string_view name);
 
-/// Table: columns with units, then notes; reasons are indented below their row. Csv: RFC 4180, with a header. Json:
-/// rows as objects, with geometry and way in metres of the map frame. GeoJson: a feature for each row that has a place,
-/// in `frame`; throws as writeFootprints(). All end with a line end.
+/// Table: columns with units, then notes; reasons are indented below their row. Csv: RFC 4180, with a header; reasons
+/// are the lines of a last column `why`, notes have no place. Json: rows as objects, with geometry and way in metres of
+/// the map frame. GeoJson: a feature for each row, in `frame`, with the geometry null where the row has no place; notes
+/// are a member of the collection (RFC 7946, section 6.1). Throws as writeFootprints(). All end with a line end.
 std::string answerText(const mapping::MapReader& map, const TaskAnswer& answer, AnswerFormat format,
                        ExportFrame frame = ExportFrame::LongitudeLatitude);
+/// Whether people see the notes where they see the rows. Csv has none, and most readers of GeoJson skip them.
+bool showsNotes(AnswerFormat format);
 
 }  // namespace cluxel::tasks

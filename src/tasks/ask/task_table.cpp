@@ -134,6 +134,13 @@ const Task& taskNamed(std::span<const Task> tasks, const std::string& name) {
   throw Error(ErrorKind::NotFound, "there is no task '" + name + "'; " + hint);
 }
 
+TaskAnswer answerOf(const Task& task, const TaskContext& context, const TaskValues& values) {
+  TaskAnswer answer = task.run(context, values);
+  if (answer.columns.empty()) answer.columns = task.columns;
+  answer.has_reasons = context.with_reasons && task.has_reasons;
+  return answer;
+}
+
 std::string taskListJson(std::span<const Task> tasks) {
   using nlohmann::ordered_json;
   ordered_json all = ordered_json::array();

@@ -63,6 +63,8 @@ struct Task {
 std::vector<Task> tasksOf(const std::vector<Question>& questions);
 /// By name; "-" and "_" are one, and a question may be written as its file. Throws Error (NotFound).
 const Task& taskNamed(std::span<const Task> tasks, const std::string& name);
+/// Runs the task; the answer has its columns and tells whether it has reasons.
+TaskAnswer answerOf(const Task& task, const TaskContext& context, const TaskValues& values);
 /// Name, title, parameters and columns as a JSON array.
 std::string taskListJson(std::span<const Task> tasks);
 
