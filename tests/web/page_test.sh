@@ -35,6 +35,12 @@ tree=$("$cluxel" query '<b>markup.clx' trees.rq --format csv | sed -n 2p | cut -
 "$cluxel" build visits -o visits.clx 2>/dev/null
 "$cluxel" view visits.clx -o visits.html
 
+# A scan without a time, so no visit.
+mkdir timeless
+cp scans/scan_000.pcd timeless/
+"$cluxel" build timeless -o timeless.clx 2>/dev/null
+"$cluxel" view timeless.clx -o timeless.html
+
 # A map that a change has touched.
 cp campus.clx changed.clx
 "$cluxel" retract changed.clx scan_002.pcd >/dev/null 2>&1

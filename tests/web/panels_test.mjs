@@ -106,6 +106,20 @@ test('a fault takes the colours of the visit before away', async () => {
   assert.equal(await page.inputValue('#visit'), '1', 'the fault is that of the visit that the slider names');
 });
 
+test('a map without times is told from a map of one visit', async () => {
+  for (const [file, visits, hint] of [['timeless', 0, /^No scan of the map has a time and a pose.*Give times/], ['campus', 1, /^The map has one visit/]]) {
+    const one = await openPage(join(folder, `${file}.html`));
+    try {
+      assert.equal(await one.page.evaluate(() => window.cluxelPage.model.values.visits.length), visits);
+      await one.page.click('#tab-visits');
+      assert.match(await one.page.textContent('.visits .count'), hint);
+      assert.ok(await one.page.isDisabled('#visit'));
+    } finally {
+      await one.close();
+    }
+  }
+});
+
 test('an answer takes the place of the colours of a visit', async () => {
   const { page } = open;
   await page.click('#tab-visits');

@@ -15,6 +15,13 @@ const KINDS: Record<Kind, { colour: Rgb; label: string }> = {
   unobserved: { colour: [204, 121, 167], label: 'not observed' },
 };
 
+/** By the number of visits: none, one, more. */
+const HINTS = [
+  'No scan of the map has a time and a pose, so nothing tells what came later. Give times with the scans (times.txt, or a manifest), build the map again and write this page anew.',
+  'The map has one visit: nothing can be compared.',
+  'first visit; move the slider to a later one',
+];
+
 export class VisitPanel {
   readonly element: HTMLElement;
   private readonly slider: HTMLInputElement;
@@ -39,7 +46,7 @@ export class VisitPanel {
   private reset(): void {
     const { visits } = this.model.values;
     this.slider.value = '0';
-    this.name(visits.length < 2 ? 'The map has one visit: nothing can be compared.' : 'first visit; move the slider to a later one');
+    this.name(HINTS[Math.min(visits.length, 2)]);
     this.list.replaceChildren();
     if (this.own.checked) {
       this.own.checked = false;
