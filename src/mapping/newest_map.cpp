@@ -9,7 +9,13 @@ constexpr const char* kCommitToken = "newest map";
 }
 
 bool NewestMap::isNewest() {
-  environment_ = rdf::Environment::open(file_, rdf::OpenMode::ReadOnly);
+  try {
+    environment_ = rdf::Environment::open(file_, rdf::OpenMode::ReadOnly);
+  } catch (...) {  // perhaps the map has another name now, under which it is not written while it is open here
+    release();
+    environment_.reset();
+    throw;
+  }
   const rdf::QuadReader present(environment_->read());
   return reader_ && present.kept(kCommitToken) == state_;
 }

@@ -11,6 +11,7 @@
 #include "cluxel/error.hpp"
 #include "mapping/facts/fact_sink.hpp"
 #include "mapping/map_state.hpp"
+#include "mapping/newest_map.hpp"
 #include "mapping/small_campus.hpp"
 #include "perception/crf/label_model.hpp"
 #include "perception/pipeline.hpp"
@@ -237,6 +238,19 @@ TEST_F(MapReading, OfAnEarlierModelSaysToBuildAnew) {
     EXPECT_NE(std::string(error.what()).find("earlier.clx: was made by another version"), std::string::npos);
     EXPECT_NE(std::string(error.what()).find("build it anew"), std::string::npos) << error.what();
   }
+}
+
+/// Nobody may write the map under its new name as long as it is open under the old one.
+TEST_F(MapReading, AMapThatWasMovedIsClosedWhenItIsAskedFor) {
+  const std::filesystem::path file = folder->path() / "asked.clx", moved = folder->path() / "moved.clx";
+  std::filesystem::copy_file(folder->path() / "map.clx", file);
+  NewestMap newest(file);
+  const std::uint64_t quads = newest.reader().quads().size();
+  std::filesystem::rename(file, moved);
+  EXPECT_THROW(newest.releaseIfOld(), Error);
+  EXPECT_EQ(Environment::open(moved, OpenMode::ReadOnly)->file(), moved) << "it is open under its old name";
+  std::filesystem::rename(moved, file);
+  EXPECT_EQ(newest.reader().quads().size(), quads);
 }
 
 TEST(DecimalText, IsShortAndHasAPoint) {

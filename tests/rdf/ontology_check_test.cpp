@@ -24,7 +24,7 @@ std::vector<RdfSource> withAddition(const std::string& addition) {
 }
 
 /// The faults of the shipped ontology with more statements, from line 3 on; "" without any.
-std::string faultsOf(const std::string& addition) {
+std::string foundFaults(const std::string& addition) {
   try {
     checkOntology(withAddition(addition));
   } catch (const InputError& error) {
@@ -34,50 +34,50 @@ std::string faultsOf(const std::string& addition) {
 }
 
 TEST(OntologyCheck, FindsNoFaultInTheShippedOntology) {
-  EXPECT_EQ(faultsOf(""), "");
+  EXPECT_EQ(foundFaults(""), "");
 }
 
 TEST(OntologyCheck, RefusesASuperclassThatIsDefinedNowhere) {
-  EXPECT_THAT(faultsOf("clx:Bench a owl:Class ;\n  rdfs:subClassOf clx:StreetFurnitur .\n"),
+  EXPECT_THAT(foundFaults("clx:Bench a owl:Class ;\n  rdfs:subClassOf clx:StreetFurnitur .\n"),
               AllOf(HasSubstr("more.ttl:4:23: error: Bench: there is no class StreetFurnitur"),
                     HasSubstr("did you mean 'StreetFurniture'?")));
-  EXPECT_THAT(faultsOf("my:Seat a owl:Class ; rdfs:subClassOf clx:Object . my:Bench a owl:Class ; "
-                       "rdfs:subClassOf my:Saet ."),
+  EXPECT_THAT(foundFaults("my:Seat a owl:Class ; rdfs:subClassOf clx:Object . my:Bench a owl:Class ; "
+                          "rdfs:subClassOf my:Saet ."),
               AllOf(HasSubstr("there is no class Saet"), HasSubstr("did you mean 'Seat'?")));
-  EXPECT_THAT(faultsOf("clx:Bench a owl:Class ; rdfs:subClassOf \"Object\" ."),
+  EXPECT_THAT(foundFaults("clx:Bench a owl:Class ; rdfs:subClassOf \"Object\" ."),
               HasSubstr("subClassOf has a text or number where a class is wanted"));
-  EXPECT_THAT(faultsOf("clx:Bench a owl:Class ; rdfs:subClassOf clx:Seat . clx:Seat rdfs:subClassOf clx:Object ."),
+  EXPECT_THAT(foundFaults("clx:Bench a owl:Class ; rdfs:subClassOf clx:Seat . clx:Seat rdfs:subClassOf clx:Object ."),
               HasSubstr("Seat is not declared as a class"));
 }
 
 TEST(OntologyCheck, TakesSuperclassesOfOtherVocabularies) {
-  EXPECT_EQ(faultsOf("clx:Bench a owl:Class ; rdfs:subClassOf clx:StreetFurniture, <https://schema.org/Product>,\n"
-                     "  <http://www.w3.org/ns/sosa/Platform>, [ a owl:Restriction ] .\n"
-                     "<http://www.w3.org/ns/sosa/Platform> a owl:Class ; rdfs:subClassOf "
-                     "<http://www.w3.org/ns/sosa/Thing> ."),
+  EXPECT_EQ(foundFaults("clx:Bench a owl:Class ; rdfs:subClassOf clx:StreetFurniture, <https://schema.org/Product>,\n"
+                        "  <http://www.w3.org/ns/sosa/Platform>, [ a owl:Restriction ] .\n"
+                        "<http://www.w3.org/ns/sosa/Platform> a owl:Class ; rdfs:subClassOf "
+                        "<http://www.w3.org/ns/sosa/Thing> ."),
             "");
 }
 
 TEST(OntologyCheck, TakesSuperclassesBesideADeclaredClassOfAnotherVocabulary) {
-  EXPECT_EQ(faultsOf("<http://dbpedia.org/ontology/Tree> a owl:Class .\n"
-                     "clx:Lime a owl:Class ; rdfs:subClassOf clx:Tree, <http://dbpedia.org/ontology/Plant> ."),
+  EXPECT_EQ(foundFaults("<http://dbpedia.org/ontology/Tree> a owl:Class .\n"
+                        "clx:Lime a owl:Class ; rdfs:subClassOf clx:Tree, <http://dbpedia.org/ontology/Plant> ."),
             "");
-  EXPECT_EQ(faultsOf("<urn:a:Seat> a owl:Class ; rdfs:subClassOf clx:Object, <urn:b:Plant> ."), "");
-  EXPECT_THAT(faultsOf("<urn:a:Seat> a owl:Class ; rdfs:subClassOf clx:Object, <urn:a:Chair> ."),
+  EXPECT_EQ(foundFaults("<urn:a:Seat> a owl:Class ; rdfs:subClassOf clx:Object, <urn:b:Plant> ."), "");
+  EXPECT_THAT(foundFaults("<urn:a:Seat> a owl:Class ; rdfs:subClassOf clx:Object, <urn:a:Chair> ."),
               HasSubstr("there is no class urn:a:Chair"));
 }
 
 TEST(OntologyCheck, ShowsWholeNamesThatDifferInTheNamespaceAlone) {
-  EXPECT_THAT(faultsOf("my:Seat a owl:Class ; rdfs:subClassOf my:Plant, clx:Object ."),
+  EXPECT_THAT(foundFaults("my:Seat a owl:Class ; rdfs:subClassOf my:Plant, clx:Object ."),
               AllOf(HasSubstr("Seat: there is no class <http://x/my#Plant>"),
                     HasSubstr("did you mean <https://w3id.org/cluxel/ontology#Plant>?")));
-  EXPECT_THAT(faultsOf("my:Seat a owl:Class ; rdfs:subClassOf my:Plnt, clx:Object ."),
+  EXPECT_THAT(foundFaults("my:Seat a owl:Class ; rdfs:subClassOf my:Plnt, clx:Object ."),
               AllOf(HasSubstr("Seat: there is no class Plnt"), Not(HasSubstr("did you mean"))));
 }
 
 TEST(OntologyCheck, RefusesPropertiesThatTheVocabularyLacks) {
-  EXPECT_THAT(faultsOf("clx:P a clx:UsualPlace ; clx:usualFor clx:Bush ; clx:nearClas clx:Tree ; clx:within 1.0 ;\n"
-                       "  clx:nearClass clx:Tree ; clx:probabilty 0.001 ; my:note \"mine\" ."),
+  EXPECT_THAT(foundFaults("clx:P a clx:UsualPlace ; clx:usualFor clx:Bush ; clx:nearClas clx:Tree ; clx:within 1.0 ;\n"
+                          "  clx:nearClass clx:Tree ; clx:probabilty 0.001 ; my:note \"mine\" ."),
               AllOf(HasSubstr("more.ttl:3:54: error: P: there is no property nearClas"),
                     HasSubstr("did you mean 'nearClass'?"), HasSubstr("did you mean 'probability'?"),
                     HasSubstr("P: the usual place has no clx:probability"), Not(HasSubstr("no property note"))));
@@ -85,29 +85,29 @@ TEST(OntologyCheck, RefusesPropertiesThatTheVocabularyLacks) {
 
 TEST(OntologyCheck, RefusesUsualPlacesThatTellTooLittle) {
   const std::string place = "clx:P a clx:UsualPlace ; clx:usualFor clx:Ground ; clx:nearClass clx:Tree ; ";
-  EXPECT_EQ(faultsOf(place + "clx:within 15.0 ; clx:probability 0.4 ."), "");
-  EXPECT_THAT(faultsOf(place + "clx:probability 0.4 ; clx:within -15.0 ."),
+  EXPECT_EQ(foundFaults(place + "clx:within 15.0 ; clx:probability 0.4 ."), "");
+  EXPECT_THAT(foundFaults(place + "clx:probability 0.4 ; clx:within -15.0 ."),
               AllOf(HasSubstr("more.ttl:3:"), HasSubstr("P: clx:within is '-15.0'"), HasSubstr("above 0 [m]")));
-  EXPECT_THAT(faultsOf(place + "clx:within \"near\" ; clx:probability 0.4 ."), HasSubstr("clx:within is 'near'"));
-  EXPECT_THAT(faultsOf(place + "clx:within 15.0 ."), HasSubstr("P: the usual place has no clx:probability"));
-  EXPECT_THAT(faultsOf(place + "clx:probability 0.4 ."), HasSubstr("P: the usual place has no clx:within"));
-  EXPECT_THAT(faultsOf("clx:P a clx:UsualPlace ; clx:within 1.0 ; clx:probability 0.4 ."),
+  EXPECT_THAT(foundFaults(place + "clx:within \"near\" ; clx:probability 0.4 ."), HasSubstr("clx:within is 'near'"));
+  EXPECT_THAT(foundFaults(place + "clx:within 15.0 ."), HasSubstr("P: the usual place has no clx:probability"));
+  EXPECT_THAT(foundFaults(place + "clx:probability 0.4 ."), HasSubstr("P: the usual place has no clx:within"));
+  EXPECT_THAT(foundFaults("clx:P a clx:UsualPlace ; clx:within 1.0 ; clx:probability 0.4 ."),
               AllOf(HasSubstr("has no clx:usualFor"), HasSubstr("has no clx:nearClass")));
   EXPECT_THAT(
-      faultsOf("clx:P clx:usualFor clx:Ground ; clx:nearClass [ a owl:Class ] ; clx:within 1.0 ; "
-               "clx:probability 0.4 ."),
+      foundFaults("clx:P clx:usualFor clx:Ground ; clx:nearClass [ a owl:Class ] ; clx:within 1.0 ; "
+                  "clx:probability 0.4 ."),
       AllOf(HasSubstr("P: nearClass has something unnamed where a class is wanted"), Not(HasSubstr("did you mean"))));
 }
 
 TEST(OntologyCheck, RefusesTwoValuesWhereOneIsMeant) {
   const std::string place = "clx:P clx:usualFor clx:Ground ; clx:nearClass clx:Tree ; ";
-  EXPECT_THAT(faultsOf(place + "clx:within 15.0 ; clx:probability 0.4, 0.5 ."),
+  EXPECT_THAT(foundFaults(place + "clx:within 15.0 ; clx:probability 0.4, 0.5 ."),
               HasSubstr("P: it has more than one clx:probability"));
-  EXPECT_THAT(faultsOf(place + "clx:within 15.0, 16.0 ; clx:probability 0.4 ."),
+  EXPECT_THAT(foundFaults(place + "clx:within 15.0, 16.0 ; clx:probability 0.4 ."),
               HasSubstr("P: it has more than one clx:within"));
-  EXPECT_THAT(faultsOf("clx:Tree clx:mobility clx:Movable ."), HasSubstr("Tree: it has more than one clx:mobility"));
-  EXPECT_THAT(faultsOf("clx:Tree clx:color \"#123456\" ."), HasSubstr("Tree: it has more than one clx:color"));
-  EXPECT_EQ(faultsOf("clx:Tree clx:mobility clx:Static ."), "") << "said again";
+  EXPECT_THAT(foundFaults("clx:Tree clx:mobility clx:Movable ."), HasSubstr("Tree: it has more than one clx:mobility"));
+  EXPECT_THAT(foundFaults("clx:Tree clx:color \"#123456\" ."), HasSubstr("Tree: it has more than one clx:color"));
+  EXPECT_EQ(foundFaults("clx:Tree clx:mobility clx:Static ."), "") << "said again";
 }
 
 TEST(OntologyCheck, RefusesPlacesOfAClassThatAreTooProbableTogether) {
@@ -117,9 +117,9 @@ TEST(OntologyCheck, RefusesPlacesOfAClassThatAreTooProbableTogether) {
   const std::string other =
       "clx:Q clx:usualFor clx:Ground ; clx:nearClass clx:Bush ; clx:within 5.0 ;"
       " clx:probability ";
-  EXPECT_EQ(faultsOf(one + other + "0.3 ."), "");
+  EXPECT_EQ(foundFaults(one + other + "0.3 ."), "");
   EXPECT_THAT(
-      faultsOf(one + other + "0.5 ."),
+      foundFaults(one + other + "0.5 ."),
       AllOf(HasSubstr("more.ttl:4:"), HasSubstr("Q: the probabilities of the usual places of Ground sum to 1.2"),
             HasSubstr("they sum to at most 1")));
 }

@@ -19,6 +19,7 @@
 #include "rdf/file/lmdb_environment.hpp"
 #include "rdf/file/lock_file.hpp"
 #include "rdf/file/map_replacement.hpp"
+#include "rdf/file/opening/lmdb_opening.hpp"
 #include "rdf/file/private_copy.hpp"
 #include "rdf/store/store_snapshot.hpp"
 #include "rdf/terms/value_cache.hpp"
@@ -28,21 +29,6 @@ namespace cluxel::rdf {
 namespace fs = std::filesystem;
 
 namespace {
-
-constexpr unsigned kMaxReaders = 510;
-constexpr std::size_t kSmallestMap = std::size_t{1} << 28U;
-#if defined(__has_feature)
-#define CLUXEL_THREAD_SANITIZER __has_feature(thread_sanitizer)
-#elif defined(__SANITIZE_THREAD__)
-#define CLUXEL_THREAD_SANITIZER 1
-#else
-#define CLUXEL_THREAD_SANITIZER 0
-#endif
-#if CLUXEL_THREAD_SANITIZER
-constexpr std::size_t kMaxMapBytes = std::size_t{1} << 34U;  // ThreadSanitizer reserves most of the address space
-#else
-constexpr std::size_t kMaxMapBytes = std::size_t{1} << 40U;
-#endif
 
 /// The open environments of this process. LMDB's POSIX locks are lost when a process opens a file twice.
 struct OpenEnvironments {
@@ -75,41 +61,6 @@ int openFile(const fs::path& file, OpenMode mode, bool& can_write) {
   failStore(file, errno, mode == OpenMode::Create ? "create the map" : "open the map");
 }
 
-/// Reserves as much address space as possible, so that a map does not outgrow its mapping.
-EnvHandle openLmdb(const fs::path& file, std::uint64_t file_size, unsigned flags) {
-  int code = 0;
-  for (std::size_t map_size = kMaxMapBytes; map_size >= kSmallestMap && map_size > file_size; map_size /= 2) {
-    MDB_env* raw = nullptr;
-    checkLmdb(mdb_env_create(&raw), file, "open the map");
-    EnvHandle handle(raw);
-    mdb_env_set_maxreaders(raw, kMaxReaders);
-    mdb_env_set_maxdbs(raw, kTableCount);
-    mdb_env_set_mapsize(raw, map_size);
-    code = mdb_env_open(raw, file.c_str(), flags | MDB_NOSUBDIR | MDB_NOTLS, 0666);
-    if (code == MDB_SUCCESS) return handle;
-    if (code != ENOMEM && code != EINVAL) break;  // EINVAL: Valgrind's limit
-  }
-  failStore(file, code, "open the map");
-}
-
-/// How this process may use a file.
-struct Access {
-  bool can_write = true;       ///< may write the file
-  bool holds_writers = false;  ///< has no lock file, but the writers' lock until it closes the file
-};
-
-/// Null when the process cannot register as a reader; the caller then reads a private copy of the file.
-EnvHandle openLmdbFor(const fs::path& file, std::uint64_t file_size, OpenMode mode, Access& access, int descriptor,
-                      unsigned extra) {
-  const LockFile lock = prepareLockFile(file, descriptor, access.can_write);
-  if (lock.state == LockFileState::Usable) return openLmdb(file, file_size, access.can_write ? extra : MDB_RDONLY);
-  if (mode != OpenMode::ReadOnly) failLockFile(file, lock);
-  if (lock.state == LockFileState::Refused) return nullptr;
-  lockAgainstWriters(descriptor, WriteLock::Copying, file);
-  access = {.can_write = false, .holds_writers = true};
-  return openLmdb(file, file_size, MDB_RDONLY | MDB_NOLOCK);
-}
-
 struct CheckedCommit {
   std::size_t commit = 0;
   PresentKeys keys;
@@ -124,12 +75,12 @@ CheckedCommit checkUnderSnapshot(MDB_env* handle, int descriptor, const fs::path
 }
 
 /// The environment of a file that LMDB has opened.
-std::shared_ptr<LmdbEnvironment> environmentOf(const fs::path& file, EnvHandle handle, Descriptor& descriptor,
-                                               const MapFileHead& head, bool can_write, bool may_write) {
+std::shared_ptr<LmdbEnvironment> environmentOf(const fs::path& file, OpenedLmdb opened, Descriptor& descriptor,
+                                               const MapFileHead& head, bool may_write) {
   const MapScope scope = may_write ? MapScope::Writing : MapScope::Reading;  // one walk for reading and writing
   CheckedCommit checked;
-  if (head.file_size != 0) checked = checkUnderSnapshot(handle.get(), descriptor.get(), file, scope);
-  auto environment = std::make_shared<LmdbEnvironment>(file, std::move(handle), descriptor.release(), can_write);
+  if (head.file_size != 0) checked = checkUnderSnapshot(opened.handle.get(), descriptor.get(), file, scope);
+  auto environment = std::make_shared<LmdbEnvironment>(file, std::move(opened), descriptor.release());
   if (may_write) environment->allowWriting();
   environment->noteStructure(checked.commit, scope == MapScope::Writing, std::move(checked.keys));
   environment->openTables();
@@ -150,8 +101,10 @@ std::shared_ptr<LmdbEnvironment> openCopy(const fs::path& file, const Descriptor
   PrivateCopy copy(file, descriptor.get());
   Descriptor bytes = copy.takeDescriptor();
   const MapFileHead head = readMapFileHead(bytes.get(), file);
-  EnvHandle handle = openLmdb(copy.file(), head.file_size, MDB_RDONLY | MDB_NOLOCK);
-  auto environment = environmentOf(file, std::move(handle), bytes, head, false, false);
+  OpenedLmdb opened;
+  opened.can_write = false;
+  opened.handle = openLmdb(copy.file(), head.file_size, MDB_RDONLY | MDB_NOLOCK);
+  auto environment = environmentOf(file, std::move(opened), bytes, head, false);
   environment->loseName();
   known = environment;
   commit = head.transaction;
@@ -170,15 +123,16 @@ Opened openNew(const fs::path& file, Descriptor& descriptor, bool can_write, Ope
   const MapFileHead head = readMapFileHead(descriptor.get(), file);
   if (head.file_size == 0 && mode != OpenMode::Create && mode != OpenMode::Fill)
     throw Error(ErrorKind::StoreUnavailable, file.string() + ": is empty, a map was expected");
-  Access access{.can_write = can_write};
-  EnvHandle handle;
-  {
-    const NameLock lock(descriptor.get(), NameLock::Kind::Opening);  // LMDB opens the file again by its name
-    if (!isNamed(identityOf(descriptor.get(), file), file)) return {};
-    handle = openLmdbFor(file, head.file_size, mode, access, descriptor.get(), extra_flags);
-  }
-  if (!handle) return {openCopy(file, descriptor), false};
-  return {environmentOf(file, std::move(handle), descriptor, head, access.can_write, may_write), !access.holds_writers};
+  OpenedLmdb opened = openLmdbByName({.file = file,
+                                      .descriptor = descriptor.get(),
+                                      .file_size = head.file_size,
+                                      .mode = mode,
+                                      .can_write = can_write,
+                                      .flags = extra_flags});
+  if (opened.outcome == LmdbOutcome::Renamed) return {};
+  if (opened.outcome == LmdbOutcome::NeedsCopy) return {openCopy(file, descriptor), false};
+  const bool is_shared = !opened.holds_writers;
+  return {environmentOf(file, std::move(opened), descriptor, head, may_write), is_shared};
 }
 
 /// The environment from the process-wide table, or a new one; none when the file was replaced meanwhile.
@@ -242,11 +196,12 @@ std::shared_ptr<Environment> Environment::temporaryCopyOf(const fs::path& file) 
   return environment;
 }
 
-LmdbEnvironment::LmdbEnvironment(fs::path file, EnvHandle handle, int data_lock, bool can_write)
+LmdbEnvironment::LmdbEnvironment(fs::path file, OpenedLmdb opened, int data_lock)
     : file_(std::move(file)),
-      handle_(std::move(handle)),
+      use_(std::move(opened.use)),
+      handle_(std::move(opened.handle)),
       data_lock_(data_lock),
-      can_write_(can_write),
+      can_write_(opened.can_write),
       values_(std::make_unique<ValueCache>()) {}
 
 std::uint64_t LmdbEnvironment::fileSize() const {
@@ -280,6 +235,7 @@ LmdbEnvironment::~LmdbEnvironment() {
   // The table stays locked until LMDB has closed the file, so that no thread opens it in between.
   const std::lock_guard lock(table.mutex);
   handle_.reset();
+  use_.reset();
   ::close(data_lock_);
   if (!known) return;
   const auto entry = table.entries.find({status.st_dev, status.st_ino});

@@ -100,6 +100,18 @@ void lockAgainstWriters(int descriptor, WriteLock kind, const fs::path& file) {
   }
 }
 
+bool runWithoutWriters(int descriptor, const fs::path& file, const std::function<void()>& work) {
+  if (!tryLockAgainstWriters(descriptor, WriteLock::Writing, file)) return false;
+  try {
+    work();
+  } catch (...) {
+    ::flock(descriptor, LOCK_UN);
+    throw;
+  }
+  ::flock(descriptor, LOCK_UN);
+  return true;
+}
+
 void refusePipe(const fs::path& file) {
   std::error_code ignored;
   const fs::file_status status = fs::status(file, ignored);

@@ -9,6 +9,7 @@
 #include <array>
 #include <compare>
 #include <filesystem>
+#include <functional>
 #include <utility>
 
 namespace cluxel::rdf {
@@ -89,6 +90,9 @@ enum class WriteLock { Writing, Copying };
 void lockAgainstWriters(int descriptor, WriteLock kind, const std::filesystem::path& file);
 /// Does not wait: false when another process holds the lock.
 bool tryLockAgainstWriters(int descriptor, WriteLock kind, const std::filesystem::path& file);
+
+/// Runs `work` while no process writes or copies the map; false, without running it, when one does.
+bool runWithoutWriters(int descriptor, const std::filesystem::path& file, const std::function<void()>& work);
 
 /// Opening a named pipe waits for a writer, which may never come. Throws Error (StoreUnavailable) for what is neither a
 /// file nor a folder, before it is opened.

@@ -15,6 +15,7 @@
 #include "rdf/file/environment.hpp"
 #include "rdf/file/lmdb_handles.hpp"
 #include "rdf/file/map_check.hpp"
+#include "rdf/file/opening/lmdb_opening.hpp"
 #include "rdf/file/table.hpp"
 #include "rdf/store/quad_journal.hpp"
 
@@ -47,7 +48,7 @@ constexpr unsigned tableFlags(Table table) {
 class LmdbEnvironment final : public Environment {
  public:
   /// `data_lock` is the file descriptor that holds the writer's lock; the environment takes ownership.
-  LmdbEnvironment(std::filesystem::path file, EnvHandle handle, int data_lock, bool can_write);
+  LmdbEnvironment(std::filesystem::path file, OpenedLmdb opened, int data_lock);
   ~LmdbEnvironment() override;
   LmdbEnvironment(const LmdbEnvironment&) = delete;
   LmdbEnvironment& operator=(const LmdbEnvironment&) = delete;
@@ -115,11 +116,15 @@ class LmdbEnvironment final : public Environment {
  private:
   void lockAgainstProcesses();
   void requireName();
+  void requireOneLockFile();
+  void requireNewest(MDB_txn* reading) const;
+  bool withoutWriters(const std::function<void()>& work) const;
   void createTables(ReadTransaction::Impl& transaction);
   void verifyForWriting(std::size_t commit);
   void startSums(WriteTransaction& transaction, std::size_t commit);
 
   std::filesystem::path file_;
+  std::unique_ptr<JointUse> use_;  ///< none: no lock file
   EnvHandle handle_;
   int data_lock_;
   bool can_write_, has_name_ = true;
@@ -139,7 +144,7 @@ class LmdbEnvironment final : public Environment {
   mutable std::mutex snapshot_mutex_;
   mutable std::size_t snapshot_transaction_ = 0;
   mutable std::shared_ptr<StoreSnapshot> snapshot_;
-  std::mutex writer_mutex_;
+  mutable std::mutex writer_mutex_;
   std::condition_variable writer_left_;
   bool writer_active_ = false;
   std::thread::id writer_thread_;

@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <cstring>
 #include <string>
+#include <utility>
 
 #include "cluxel/error.hpp"
 #include "rdf/file/file_guards.hpp"
@@ -27,7 +28,7 @@ bool isFullDisk(int code) {
 }
 
 LockFile unusable(int code) {
-  return {isFullDisk(code) ? LockFileState::NoRoom : LockFileState::Refused, code};
+  return {isFullDisk(code) ? LockFileState::NoRoom : LockFileState::Refused, code, Descriptor()};
 }
 
 /// The owner stays as it is where the process may not change it.
@@ -58,11 +59,12 @@ fs::path lockFileOf(fs::path map) {
 
 LockFile prepareLockFile(const fs::path& map, int descriptor, bool can_write) {
   bool is_new = false;
-  const Descriptor lock = openLockFile(lockFileOf(map), can_write, is_new);
+  Descriptor lock = openLockFile(lockFileOf(map), can_write, is_new);
   if (lock.get() < 0) return unusable(errno);
   if (is_new) adoptRights(lock.get(), descriptor);
   const int code = ::fallocate(lock.get(), 0, 0, kLockFileBytes) == 0 ? 0 : errno;
-  return code == 0 || code == EOPNOTSUPP || code == ENOSYS ? LockFile{} : unusable(code);
+  if (code != 0 && code != EOPNOTSUPP && code != ENOSYS) return unusable(code);
+  return {LockFileState::Usable, 0, std::move(lock)};
 }
 
 void failLockFile(const fs::path& map, const LockFile& lock) {

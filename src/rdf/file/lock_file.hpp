@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <filesystem>
 
+#include "rdf/file/file_guards.hpp"
+
 namespace cluxel::rdf {
 
 std::filesystem::path lockFileOf(std::filesystem::path map);
@@ -17,7 +19,8 @@ enum class LockFileState : std::uint8_t {
 
 struct LockFile {
   LockFileState state = LockFileState::Usable;
-  int reason = 0;  ///< errno value when it is not usable
+  int reason = 0;         ///< errno value when it is not usable
+  Descriptor descriptor;  ///< of a usable one
 };
 
 /// Prepares the lock file of `map`, which is open as `descriptor`. Only a process that may write the map makes a lock

@@ -1,20 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Transactions: snapshots, the single writer among threads and processes, and the file format check.
-#include <fcntl.h>
-#include <sys/file.h>
-#include <unistd.h>
-
-#include <cerrno>
+// Transactions: snapshots, commits, and the file format check.
 #include <charconv>
 #include <stdexcept>
 #include <utility>
 
 #include "cluxel/error.hpp"
 #include "rdf/file/check/map_structure.hpp"
-#include "rdf/file/file_guards.hpp"
 #include "rdf/file/lmdb_environment.hpp"
 #include "rdf/file/map_check.hpp"
-#include "rdf/file/map_replacement.hpp"
+#include "rdf/file/opening/newest_commit.hpp"
 #include "rdf/store/indexes/changed_ranges.hpp"
 #include "rdf/store/indexes/index_directories.hpp"
 #include "rdf/store/indexes/index_draft.hpp"
@@ -105,51 +99,12 @@ void LmdbEnvironment::openTables() {
   first.commit();
 }
 
-void LmdbEnvironment::allowWriting() {
-  if (!can_write_) failStore(file_, EACCES, "open the map for writing");
-  writing_allowed_ = true;
-  int dead_readers = 0;
-  check(mdb_reader_check(handle(), &dead_readers), "drop the readers that were killed");
-}
-
-void LmdbEnvironment::lockAgainstProcesses() {
-  lockAgainstWriters(data_lock_, WriteLock::Writing, file_);
-  requireName();
-}
-
-/// The previous lock holder may have replaced the file.
-void LmdbEnvironment::requireName() {
-  if (!has_name_ || isNamed(identityOf(data_lock_, file_), file_)) return;
-  ::flock(data_lock_, LOCK_UN);
-  throw MapReplaced(file_);
-}
-
-void LmdbEnvironment::enterWriting() {
-  if (!writing_allowed_)
-    throw Error(ErrorKind::StoreUnavailable, file_.string() + ": the map was opened for reading only");
-  std::unique_lock lock(writer_mutex_);
-  if (writer_active_ && writer_thread_ == std::this_thread::get_id())
-    throw std::logic_error("a thread cannot write in two transactions of one map at once");
-  writer_left_.wait(lock, [this] { return !writer_active_; });
-  lockAgainstProcesses();
-  writer_active_ = true;
-  writer_thread_ = std::this_thread::get_id();
-}
-
-void LmdbEnvironment::leaveWriting() {
-  ::flock(data_lock_, LOCK_UN);
-  {
-    const std::lock_guard lock(writer_mutex_);
-    writer_active_ = false;
-  }
-  writer_left_.notify_one();
-}
-
 ReadTransaction LmdbEnvironment::read() const {
   auto impl = std::make_shared<ReadTransaction::Impl>();
   // The shared state is protected by a mutex.
   impl->environment = std::static_pointer_cast<LmdbEnvironment>(const_cast<LmdbEnvironment*>(this)->shared_from_this());
   check(mdb_txn_begin(handle(), nullptr, MDB_RDONLY, &impl->txn), "read the map");
+  requireNewest(impl->txn);
   return ReadTransaction(std::move(impl));
 }
 
@@ -162,6 +117,10 @@ WriteTransaction LmdbEnvironment::write() {
   if (code != MDB_SUCCESS) impl->end();
   check(code, "write the map");
   const std::size_t base = mdb_txn_id(impl->txn) - 1;
+  if (base != newestCommit(handle())) {  // a commit on an older one would undo the newest
+    impl->end();
+    failForeignLockFile(file_);
+  }
   MDB_stat terms;
   if (mdb_stat(impl->txn, table(Table::Terms), &terms) == MDB_SUCCESS) impl->committed_terms = terms.ms_entries;
   WriteTransaction transaction(std::move(impl));

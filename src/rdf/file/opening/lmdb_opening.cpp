@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+// Finds out whether the lock file beside a map is its own, and makes another one where it is not.
+#include "rdf/file/opening/lmdb_opening.hpp"
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <optional>
+#include <utility>
+
+#include "rdf/file/file_guards.hpp"
+#include "rdf/file/lock_file.hpp"
+#include "rdf/file/opening/newest_commit.hpp"
+#include "rdf/file/table.hpp"
+
+namespace cluxel::rdf {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr unsigned kMaxReaders = 510;
+constexpr std::size_t kSmallestMap = std::size_t{1} << 28U;
+#if defined(__has_feature)
+#define CLUXEL_THREAD_SANITIZER __has_feature(thread_sanitizer)
+#elif defined(__SANITIZE_THREAD__)
+#define CLUXEL_THREAD_SANITIZER 1
+#else
+#define CLUXEL_THREAD_SANITIZER 0
+#endif
+#if CLUXEL_THREAD_SANITIZER
+constexpr std::size_t kMaxMapBytes = std::size_t{1} << 34U;  // ThreadSanitizer reserves most of the address space
+#else
+constexpr std::size_t kMaxMapBytes = std::size_t{1} << 40U;
+#endif
+
+OpenedLmdb withOutcome(LmdbOutcome outcome) {
+  OpenedLmdb opened;
+  opened.outcome = outcome;
+  return opened;
+}
+
+/// A lock file has a wrong number when it is another map's, or when the map was changed with another lock file.
+bool hasRightNumber(const LmdbRequest& request, const OpenedLmdb& opened) {
+  MDB_txn* raw = nullptr;
+  checkLmdb(mdb_txn_begin(opened.handle.get(), nullptr, MDB_RDONLY, &raw), request.file, "read the map");
+  const TxnHandle reading(raw);
+  if (mdb_txn_id(raw) == newestCommit(opened.handle.get())) return true;
+  return reachesNewest(raw, request.file, *opened.use,
+                       [&](const auto& work) { return runWithoutWriters(request.descriptor, request.file, work); });
+}
+
+/// Whether a process writes the map with another lock file: the number in the own one will then be wrong.
+bool isWrittenElsewhere(const LmdbRequest& request, const JointUse& use) {
+  return use.hasOtherLockFiles() && !runWithoutWriters(request.descriptor, request.file, [] {});
+}
+
+bool isOpen(MDB_env* handle, const LmdbRequest& request) {
+  int descriptor = -1;
+  checkLmdb(mdb_env_get_fd(handle, &descriptor), request.file, "open the map");
+  return identityOf(descriptor, request.file) == identityOf(request.descriptor, request.file);
+}
+
+OpenedLmdb openWithoutLockFile(const LmdbRequest& request, const LockFile& lock) {
+  if (request.mode != OpenMode::ReadOnly) failLockFile(request.file, lock);
+  if (lock.state == LockFileState::Refused) return withOutcome(LmdbOutcome::NeedsCopy);
+  lockAgainstWriters(request.descriptor, WriteLock::Copying, request.file);
+  OpenedLmdb opened;
+  opened.can_write = false;
+  opened.holds_writers = true;
+  opened.handle = openLmdb(request.file, request.file_size, MDB_RDONLY | MDB_NOLOCK);
+  return opened;
+}
+
+/// None when the lock file beside the map is not its own.
+std::optional<OpenedLmdb> openWithLockFile(const LmdbRequest& request) {
+  LockFile lock = prepareLockFile(request.file, request.descriptor, request.can_write);
+  if (lock.state != LockFileState::Usable) return openWithoutLockFile(request, lock);
+  OpenedLmdb opened;
+  opened.can_write = request.can_write;
+  opened.use = std::make_unique<JointUse>(request.descriptor, std::move(lock.descriptor));
+  if (opened.use->isLockFileOfOthers()) return std::nullopt;
+  if (request.mode == OpenMode::ReadOnly && isWrittenElsewhere(request, *opened.use))
+    return withOutcome(LmdbOutcome::NeedsCopy);
+  opened.handle = openLmdb(request.file, request.file_size, request.can_write ? request.flags : MDB_RDONLY);
+  if (!isOpen(opened.handle.get(), request)) return withOutcome(LmdbOutcome::Renamed);
+  if (!hasRightNumber(request, opened)) return std::nullopt;
+  return opened;
+}
+
+/// False when another process has this map, too, open with it, or the folder may not be changed.
+bool setLockFileAside(const LmdbRequest& request) {
+  LockFile lock = prepareLockFile(request.file, request.descriptor, request.can_write);
+  if (lock.state != LockFileState::Usable) return false;
+  const JointUse use(request.descriptor, std::move(lock.descriptor));
+  return !use.hasCompany() && (::unlink(lockFileOf(request.file).c_str()) == 0 || errno == ENOENT);
+}
+
+}  // namespace
+
+EnvHandle openLmdb(const fs::path& file, std::uint64_t file_size, unsigned flags) {
+  int code = 0;
+  for (std::size_t map_size = kMaxMapBytes; map_size >= kSmallestMap && map_size > file_size; map_size /= 2) {
+    MDB_env* raw = nullptr;
+    checkLmdb(mdb_env_create(&raw), file, "open the map");
+    EnvHandle handle(raw);
+    mdb_env_set_maxreaders(raw, kMaxReaders);
+    mdb_env_set_maxdbs(raw, kTableCount);
+    mdb_env_set_mapsize(raw, map_size);
+    code = mdb_env_open(raw, file.c_str(), flags | MDB_NOSUBDIR | MDB_NOTLS, 0666);
+    if (code == MDB_SUCCESS) return handle;
+    if (code != ENOMEM && code != EINVAL) break;  // EINVAL: Valgrind's limit
+  }
+  failStore(file, code, "open the map");
+}
+
+OpenedLmdb openLmdbByName(const LmdbRequest& request) {
+  const FileIdentity identity = identityOf(request.descriptor, request.file);
+  {
+    const NameLock lock(request.descriptor, NameLock::Kind::Opening);  // LMDB opens the file again by its name
+    if (!isNamed(identity, request.file)) return withOutcome(LmdbOutcome::Renamed);
+    if (auto opened = openWithLockFile(request)) return std::move(*opened);
+  }
+  if (request.can_write) {
+    const NameLock lock(request.descriptor, NameLock::Kind::Replacing);
+    if (!isNamed(identity, request.file)) return withOutcome(LmdbOutcome::Renamed);
+    if (auto opened = openWithLockFile(request)) return std::move(*opened);  // another process was faster
+    if (setLockFileAside(request))
+      if (auto opened = openWithLockFile(request)) return std::move(*opened);
+  }
+  if (request.mode != OpenMode::ReadOnly) failForeignLockFile(request.file);
+  return withOutcome(LmdbOutcome::NeedsCopy);
+}
+
+}  // namespace cluxel::rdf

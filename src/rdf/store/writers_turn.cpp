@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+// The single writer among threads and processes, and what keeps commits from being lost when the map has two names.
+#include <sys/file.h>
+
+#include <cerrno>
+#include <chrono>
+#include <stdexcept>
+#include <thread>
+
+#include "rdf/file/file_guards.hpp"
+#include "rdf/file/lmdb_environment.hpp"
+#include "rdf/file/map_replacement.hpp"
+#include "rdf/file/opening/newest_commit.hpp"
+
+namespace cluxel::rdf {
+
+namespace {
+
+constexpr auto kOtherNamesPatience = std::chrono::milliseconds(1500);
+constexpr auto kOtherNamesPause = std::chrono::milliseconds(10);
+
+}  // namespace
+
+void LmdbEnvironment::allowWriting() {
+  if (!can_write_) failStore(file_, EACCES, "open the map for writing");
+  writing_allowed_ = true;
+  int dead_readers = 0;
+  check(mdb_reader_check(handle(), &dead_readers), "drop the readers that were killed");
+}
+
+void LmdbEnvironment::lockAgainstProcesses() {
+  lockAgainstWriters(data_lock_, WriteLock::Writing, file_);
+  requireName();
+  requireOneLockFile();
+}
+
+/// A writer reuses the pages that no reader in its own lock file reads. Others would read what it writes over them, and
+/// their lock file would not know of the commit.
+void LmdbEnvironment::requireOneLockFile() {
+  if (!use_) return;
+  const auto deadline = std::chrono::steady_clock::now() + kOtherNamesPatience;
+  while (use_->hasOtherLockFiles()) {
+    if (std::chrono::steady_clock::now() > deadline) {
+      ::flock(data_lock_, LOCK_UN);
+      throw MapBusy(file_,
+                    "another process has the map open under another name (it was moved, or has a hard link), or with a "
+                    "lock file that was removed; nothing was written: end that process, or wait until it has ended, "
+                    "and run again");
+    }
+    std::this_thread::sleep_for(kOtherNamesPause);
+  }
+}
+
+/// The previous lock holder may have replaced the file.
+void LmdbEnvironment::requireName() {
+  if (!has_name_ || isNamed(identityOf(data_lock_, file_), file_)) return;
+  ::flock(data_lock_, LOCK_UN);
+  throw MapReplaced(file_);
+}
+
+void LmdbEnvironment::enterWriting() {
+  if (!writing_allowed_)
+    throw Error(ErrorKind::StoreUnavailable, file_.string() + ": the map was opened for reading only");
+  std::unique_lock lock(writer_mutex_);
+  if (writer_active_ && writer_thread_ == std::this_thread::get_id())
+    throw std::logic_error("a thread cannot write in two transactions of one map at once");
+  writer_left_.wait(lock, [this] { return !writer_active_; });
+  lockAgainstProcesses();
+  writer_active_ = true;
+  writer_thread_ = std::this_thread::get_id();
+}
+
+void LmdbEnvironment::leaveWriting() {
+  ::flock(data_lock_, LOCK_UN);
+  {
+    const std::lock_guard lock(writer_mutex_);
+    writer_active_ = false;
+  }
+  writer_left_.notify_one();
+}
+
+bool LmdbEnvironment::withoutWriters(const std::function<void()>& work) const {
+  const std::lock_guard lock(writer_mutex_);
+  return !writer_active_ && runWithoutWriters(data_lock_, file_, work);
+}
+
+/// LMDB takes the number of the newest commit from the lock file.
+void LmdbEnvironment::requireNewest(MDB_txn* reading) const {
+  if (!use_ || mdb_txn_id(reading) == newestCommit(handle())) return;
+  const auto without_writers = [this](const auto& work) { return withoutWriters(work); };
+  if (!reachesNewest(reading, file_, *use_, without_writers)) failForeignLockFile(file_);
+}
+
+}  // namespace cluxel::rdf
