@@ -119,7 +119,17 @@ TEST_F(MapCompaction, LeavesAMapWithAnotherNameAloneAndTellsSo) {
   compactIfSparse(map, notes);
   EXPECT_TRUE(fs::equivalent(map, other));
   EXPECT_NE(notes.all.find("hard link"), std::string::npos) << notes.all;
+  try {
+    compactMap(map);
+    FAIL() << "the other name kept the old file";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::StoreUnavailable);
+    EXPECT_NE(std::string_view(error.what()).find("remove the other name"), std::string_view::npos) << error.what();
+  }
+  EXPECT_TRUE(fs::equivalent(map, other));
   fs::remove(other);
+  compactMap(map);
+  EXPECT_LT(fs::file_size(map), 8'000'000U);
 }
 
 TEST_F(MapCompaction, LeavesAMapAloneThatHasLittleFreeSpace) {

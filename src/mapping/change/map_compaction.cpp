@@ -47,6 +47,14 @@ struct stat statusOf(const fs::path& file) {
   return status;
 }
 
+/// The names would lead to different maps after that.
+void refuseOtherNames(const fs::path& map) {
+  if (statusOf(map).st_nlink > 1)
+    throw Error(ErrorKind::StoreUnavailable, map.string() +
+                                                 ": has another name (a hard link), which would keep the old file; "
+                                                 "remove the other name, or write the compacted map to another file");
+}
+
 /// The copy goes to the owner and the group of the map, which would otherwise lose it to whoever compacts it.
 void keepOwner(const fs::path& copy, const fs::path& map) {
   const struct stat own = statusOf(copy), old = statusOf(map);
@@ -85,6 +93,7 @@ std::optional<rdf::FreeSpace> knownSpaceOf(const fs::path& map, ProgressSink& si
 void compactMap(const fs::path& map, rdf::CopiedPages pages) {
   const fs::path file = withoutLinks(map), copy = copyOf(map);
   const BuildLock no_build(file);
+  refuseOtherNames(map);
   const auto environment = rdf::Environment::open(file, rdf::OpenMode::ReadWrite);
   if (hasEarlyCommit(environment->read())) {  // of a killed command
     refuseUncommittedBuild(environment->read(), map);
@@ -123,8 +132,6 @@ Compaction compactIfSparse(const fs::path& map, const rdf::FreeSpace& space, Pro
   try {
     if (!fs::exists(copyOf(map)) && !isMuch(space.bytes, space.file_bytes, max_free_share) && !isToBeFilled(space))
       return Compaction::NotNeeded;
-    if (statusOf(map).st_nlink > 1)
-      throw Error(ErrorKind::StoreUnavailable, "it has another name (a hard link), which would keep the old file");
     if (fs::space(fs::absolute(withoutLinks(map)).parent_path()).available < fs::file_size(map))
       throw Error(ErrorKind::StoreUnavailable, "there is no room beside it for a copy");
     const bool pages_are_full = !isMuch(space.bytes - space.in_free_pages, space.file_bytes, max_free_share);

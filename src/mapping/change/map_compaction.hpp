@@ -12,8 +12,8 @@ namespace cluxel::mapping {
 
 /// Rewrites a map without free pages, and with full index pages when `pages` is Filled. The copy replaces it by a
 /// rename. Readers continue with the old file. The new file has the owner, group and rights of the old one. Takes the
-/// build lock; other writers wait or are refused. Throws Error (StoreUnavailable) when the map is damaged or cannot be
-/// written; it is then as before.
+/// build lock; other writers wait or are refused. Throws Error (StoreUnavailable) when the map is damaged, cannot be
+/// written, or has another name (a hard link); it is then as before.
 void compactMap(const std::filesystem::path& map, rdf::CopiedPages pages = rdf::CopiedPages::Filled);
 
 /// Writes the same to a file that is not there yet; the map is only read. What a killed command left is not copied.
