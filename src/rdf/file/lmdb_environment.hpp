@@ -117,6 +117,7 @@ class LmdbEnvironment final : public Environment {
   void lockAgainstProcesses();
   void requireName();
   void requireOneLockFile();
+  void cutUnusedEnd() const;
   void requireNewest(MDB_txn* reading) const;
   bool withoutWriters(const std::function<void()>& work) const;
   void createTables(ReadTransaction::Impl& transaction);

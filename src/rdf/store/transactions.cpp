@@ -125,6 +125,7 @@ WriteTransaction LmdbEnvironment::write() {
   if (mdb_stat(impl->txn, table(Table::Terms), &terms) == MDB_SUCCESS) impl->committed_terms = terms.ms_entries;
   WriteTransaction transaction(std::move(impl));
   if (!verified_) verifyForWriting(base);
+  cutUnusedEnd();
   if (base > 0) {
     startSums(transaction, base);
     const ReadTransaction current = read();

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The single writer among threads and processes, and what keeps commits from being lost when the map has two names.
 #include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <chrono>
@@ -70,7 +72,21 @@ void LmdbEnvironment::enterWriting() {
   writer_thread_ = std::this_thread::get_id();
 }
 
+/// A commit that fails, or is killed, leaves pages behind the last one of the newest commit. No list of free pages has
+/// them, and no snapshot reads them: every commit has at least the pages of those before.
+void LmdbEnvironment::cutUnusedEnd() const {
+  if (!verified_) return;  // the number of the last page may be damaged
+  MDB_envinfo info{};
+  MDB_stat stat{};
+  if (mdb_env_info(handle(), &info) != MDB_SUCCESS || mdb_env_stat(handle(), &stat) != MDB_SUCCESS) return;
+  const std::uint64_t used = (std::uint64_t{info.me_last_pgno} + 1) * stat.ms_psize;
+  struct stat status {};
+  if (::fstat(data_lock_, &status) != 0 || static_cast<std::uint64_t>(status.st_size) <= used) return;
+  (void)!::ftruncate(data_lock_, static_cast<off_t>(used));  // where that fails, the map is sound, and only longer
+}
+
 void LmdbEnvironment::leaveWriting() {
+  cutUnusedEnd();
   ::flock(data_lock_, LOCK_UN);
   {
     const std::lock_guard lock(writer_mutex_);
