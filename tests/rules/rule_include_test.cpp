@@ -77,6 +77,14 @@ TEST(RuleIncluding, InsertsIntoTheOrder) {
   EXPECT_EQ(loaded.rules->order, (std::vector<std::string>{clx("Ground"), clx("Bush"), clx("SmallObject")}));
 }
 
+TEST(RuleIncluding, RefusesAnInsertionThatStandsInAList) {
+  const LoadedRules loaded =
+      loadOver("include: [ base.yaml ]\norder: [ { insert: [clx:Bush], before: clx:SmallObject } ]\n");
+  ASSERT_EQ(loaded.diagnostics.size(), 1U) << format(loaded.diagnostics);
+  EXPECT_THAT(loaded.diagnostics.front().message, ::testing::HasSubstr("'order' is a list of classes, or one mapping"));
+  EXPECT_THAT(loaded.diagnostics.front().hint, ::testing::HasSubstr("order: { insert: "));
+}
+
 TEST(RuleIncluding, FindsCycles) {
   const std::vector<RuleSource> sources{{"a.yaml", "apiVersion: cluxel.rules/v1\ninclude: [ b.yaml ]\n"},
                                         {"b.yaml", "apiVersion: cluxel.rules/v1\ninclude: [ a.yaml ]\n"}};

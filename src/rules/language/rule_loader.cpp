@@ -198,7 +198,7 @@ void checkTogether(const GatheredRules& gathered, const RuleReading& reading, co
   for (const Rule& rule : rules.rules) {
     with_rules.insert(rule.class_iri);
     const bool ordered = std::find(rules.order.begin(), rules.order.end(), rule.class_iri) != rules.order.end();
-    if (!ordered && !rule.class_iri.empty())
+    if (!ordered && !rule.class_iri.empty() && !gathered.is_order_faulty)
       faults.error(rule.at,
                    "the class " + rules.shorten(rule.class_iri) + " of rule '" + rule.id +
                        "' does not stand in 'order', so the rule never runs",

@@ -99,6 +99,15 @@ class Gatherer {
   /// itself a list is a stratum of several classes.
   void readOrder(const YamlNode& order, bool includes) {
     if (order.isSequence()) {
+      const auto mapping = std::find_if(order.items.begin(), order.items.end(),
+                                        [](const YamlNode& item) { return !item.isScalar() && !item.isSequence(); });
+      if (mapping != order.items.end()) {
+        result_.is_order_faulty = true;
+        faults_.error(mapping->at,
+                      "'order' is a list of classes, or one mapping that extends the order of the included files",
+                      "write the mapping alone: order: { insert: [clx:Tree], before: clx:SmallObject }");
+        return;
+      }
       if (includes) result_.order.clear();
       for (const YamlNode& item : order.items) insertStratum(item, result_.order.size());
       return;

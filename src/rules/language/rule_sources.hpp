@@ -19,6 +19,7 @@ struct GatheredRules {
   std::vector<std::pair<YamlNode, YamlNode>> prefixes, constants;  ///< key, value
   std::vector<std::pair<YamlNode, YamlNode>> definitions;          ///< name, what `use` puts in its place
   std::vector<std::vector<YamlNode>> order;                        ///< strata of class names
+  bool is_order_faulty = false;                                    ///< classes that were meant may be missing in it
   std::vector<std::pair<YamlNode, YamlNode>> nothing;              ///< label, log-odds
   std::vector<YamlNode> rules;
   std::vector<RuleSource> sources;  ///< in the order they were read
