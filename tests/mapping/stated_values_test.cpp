@@ -52,6 +52,20 @@ TEST(StatedValues, AreClassesOfObjects) {
               HasSubstr("no class of objects"));
 }
 
+TEST(StatedValues, AreNoClassesThatDoNotLeadToObject) {
+  rules::ClassCatalogue own = classes();
+  own.classes.push_back({"http://t.example/Auto", {}, {}});
+  own.classes.push_back({"http://t.example/Lorry", {clx("Vehicle")}, {}});
+  EXPECT_NO_THROW(requireStatable(ofClass("http://t.example/Lorry"), own));
+  try {
+    requireStatable(ofClass("http://t.example/Auto"), own);
+    FAIL() << "no error";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("<http://t.example/Auto> is no class of objects: it is not below clx:Object"));
+  }
+  EXPECT_FALSE(isClassOfObjects("http://t.example/Auto", own));
+}
+
 TEST(StatedValues, AreNoFactsThatTheMapComputes) {
   EXPECT_EQ(faultOf(fact("http://example.org/owner", Term::literal("the city"))), "");
   EXPECT_THAT(faultOf(fact(clx("height"), Term::literal("3"))), HasSubstr("is computed by the map"));

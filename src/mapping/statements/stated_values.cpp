@@ -51,9 +51,6 @@ constexpr std::array<std::string_view, 32> kComputed{"confidence",
                                                      "statementEffect",
                                                      "contradictsRules"};
 
-/// Classes of what is no object.
-constexpr std::array<std::string_view, 7> kOtherThings{"Part",        "Place", "Primitive", "Cluxel",
-                                                       "Observation", "Cloud", "Map"};
 /// Classes that say no more than that it is an object.
 constexpr std::array<std::string_view, 2> kAnyObject{"SpatialThing", "Object"};
 
@@ -65,11 +62,16 @@ bool isAnyObject(const std::string& iri) {
 
 void requireClass(const std::string& iri, const rules::ClassCatalogue& classes) {
   if (classes.find(iri) == nullptr) throw Error(ErrorKind::NotFound, "the map's ontology knows no class <" + iri + ">");
-  const bool is_any = isAnyObject(iri);
+  if (isAnyObject(iri))
+    throw Error(
+        ErrorKind::InvalidArgument,
+        "<" + iri + "> is no class of objects that tells them apart; state one such as clx:Tree or clx:StreetSign");
   if (!isClassOfObjects(iri, classes))
-    throw Error(ErrorKind::InvalidArgument, "<" + iri + "> is no class of objects" +
-                                                (is_any ? " that tells them apart" : "") +
-                                                "; state one such as clx:Tree or clx:StreetSign");
+    throw Error(
+        ErrorKind::InvalidArgument,
+        "<" + iri +
+            "> is no class of objects: it is not below clx:Object, so no question about objects would find what "
+            "has it; state one such as clx:Tree, or write in the ontology that it is rdfs:subClassOf one");
 }
 
 void requireRegion(const RegionAnchor& region) {
@@ -88,9 +90,7 @@ void requireRegion(const RegionAnchor& region) {
 }  // namespace
 
 bool isClassOfObjects(const std::string& iri, const rules::ClassCatalogue& classes) {
-  return classes.find(iri) != nullptr && !isAnyObject(iri) &&
-         std::none_of(kOtherThings.begin(), kOtherThings.end(),
-                      [&](std::string_view local) { return classes.isA(iri, clx(local)); });
+  return classes.find(iri) != nullptr && !isAnyObject(iri) && classes.isA(iri, clx("Object"));
 }
 
 void requireStatable(const std::string& property) {
