@@ -25,6 +25,7 @@
 #include "mapping/clouds/scan_store.hpp"
 #include "mapping/facts/map_history.hpp"
 #include "mapping/facts/semantic_layer.hpp"
+#include "mapping/inference/infer_facts.hpp"
 #include "mapping/inference/sparql_rules.hpp"
 #include "mapping/layers/stored_layers.hpp"
 #include "mapping/map_state.hpp"
@@ -262,6 +263,7 @@ BuildReport built(const scan::ScanSet& scans, const MapInputs& inputs, const fs:
   if (!complete.crs.empty()) sink.note("coordinate system of the map: " + complete.crs);
   checkNewSparqlRules(complete.sparql_rules);
   noteUnknownNames(complete, sink);
+  noteUnusedAxioms(complete.ontology, sink);
   const ParsedInputs parsed = parseNewInputs(complete);
   // A faulty statement is refused before anything is written.
   for (const Statement& statement : statementsAmong(params.statements)) {

@@ -6,7 +6,8 @@
 
 #include "mapping/inference/inference_graphs.hpp"
 #include "mapping/inference/sparql_rules.hpp"
-#include "rdf/vocabulary.hpp"
+#include "rdf/io/rdf_io.hpp"
+#include "rdf/ontology/unused_axioms.hpp"
 
 namespace cluxel::mapping {
 
@@ -15,6 +16,16 @@ void noteIgnoredAxioms(const std::vector<std::string>& axioms, ProgressSink& sin
     sink.note("warning: nothing is inferred from " + axiom +
               ": rdf:type, rdfs:subClassOf, rdfs:subPropertyOf and owl:inverseOf keep their meaning; remove the "
               "statement, or use properties of your own");
+}
+
+void noteUnusedAxioms(const std::vector<NamedText>& ontology, ProgressSink& sink) {
+  for (const auto& [name, count] : rdf::unusedAxioms(ontologySources(ontology))) {
+    const bool is_of_classes = name == "owl:equivalentClass";
+    sink.note("warning: nothing is inferred from " + name + " (" + std::to_string(count) +
+              (count == 1 ? " statement" : " statements") + " of the ontology); write " +
+              (is_of_classes ? "rdfs:subClassOf for each class that is below another"
+                             : "what should follow as rdfs:subClassOf, rdfs:subPropertyOf or a SPARQL rule"));
+  }
 }
 
 void inferAnew(rdf::WriteTransaction& transaction, const std::vector<NamedText>& rules, ProgressSink& sink,

@@ -26,4 +26,7 @@ void inferAnew(rdf::WriteTransaction& transaction, const std::vector<NamedText>&
 bool inferChanges(rdf::WriteTransaction& transaction, const std::vector<NamedText>& rules, ProgressSink& sink,
                   const rdf::InferenceCheck& check = {});
 
+/// Notes the axioms of an ontology from which nothing is inferred, and what to write instead.
+void noteUnusedAxioms(const std::vector<NamedText>& ontology, ProgressSink& sink);
+
 }  // namespace cluxel::mapping
