@@ -257,6 +257,7 @@ TEST(SparqlRulesCheck, RefusesPathsWithoutAStepBetweenUnboundVariables) {
 }
 
 TEST(SparqlRulesCheck, RefusesBlankNodesInTheTemplate) {
+  expectRefusal("CONSTRUCT { ?t a clx:Tree .\n  ?t clx:partOf _:row } WHERE { ?t a clx:Tree }", ":2:17: ");
   expectRefusal("CONSTRUCT { [] a clx:Avenue ; clx:hasMember ?t } WHERE { ?t a clx:Tree }", "blank node");
   expectRefusal("CONSTRUCT { ?t clx:partOf _:row } WHERE { ?t a clx:Tree }", "blank node");
 }

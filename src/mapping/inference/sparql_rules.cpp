@@ -28,13 +28,13 @@ void requireConstruct(const sparql::PreparedQuery& query, const NamedText& rule)
 void refuseBlankNodes(const NamedText& rule) {
   sparql::SparqlParseOptions options;
   options.file = rule.name;
-  const auto isBlank = [](const sparql::ast::PatternTerm& part) {
-    return !part.isVariable() && part.term().kind == TermKind::BlankNode;
-  };
-  for (const sparql::ast::TriplePattern& triple : parseQuery(rule.text, options).construct_template)
-    if (isBlank(triple.subject) || isBlank(triple.object))
-      throw InputError({.file = rule.name}, "the template of a SPARQL rule may not make a blank node",
-                       "name the new thing by clx:newObject(class, thing) in a BIND");
+  const sparql::ast::Query query = parseQuery(rule.text, options);
+  for (const sparql::ast::TriplePattern& triple : query.construct_template)
+    for (const sparql::ast::PatternTerm& part : {triple.subject, triple.object})
+      if (!part.isVariable() && part.term().kind == TermKind::BlankNode)
+        throw InputError(locationIn(query, rule.name, part.at),
+                         "the template of a SPARQL rule may not make a blank node",
+                         "name the new thing by clx:newObject(class, thing) in a BIND");
 }
 
 void refuseHistory(const NamedText& rule) {
