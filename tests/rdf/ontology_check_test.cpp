@@ -37,6 +37,46 @@ TEST(OntologyCheck, FindsNoFaultInTheShippedOntology) {
   EXPECT_EQ(foundFaults(""), "");
 }
 
+TEST(OntologyCheck, SaysThatAnOntologyIsTurtle) {
+  const auto faultsOfText = [](const std::string& text) {
+    const std::vector<RdfSource> sources{{text, "own.rdf", RdfFormat::Turtle, "http://x/", Term::iri("")}};
+    try {
+      checkOntology(sources);
+    } catch (const InputError& error) {
+      return format(error.diagnostics());
+    }
+    return std::string();
+  };
+  for (const char* text : {"<?xml version=\"1.0\"?>\n<rdf:RDF/>", "\xEF\xBB\xBF\n <rdf:RDF/>", "<!-- a --><rdf:RDF/>",
+                           "<!DOCTYPE rdf:RDF>"})
+    EXPECT_THAT(faultsOfText(text), HasSubstr("own.rdf:1:1: error: this is XML, but an ontology is read as Turtle"));
+  EXPECT_THAT(faultsOfText("{\"@id\":\"http://x/A\"}"), HasSubstr("this is JSON or TriG, but"));
+  for (const char* text : {"<http://x/A> a <http://x/B> .", "[] a <http://x/B> ."}) EXPECT_EQ(faultsOfText(text), "");
+}
+
+/// my:C0 below clx:Tree, and each further class below the one before.
+std::string chainOf(int classes) {
+  std::string text = "my:C0 a owl:Class ; rdfs:subClassOf clx:Tree .\n";
+  for (int i = 1; i < classes; ++i)
+    text += "my:C" + std::to_string(i) + " a owl:Class ; rdfs:subClassOf my:C" + std::to_string(i - 1) + " .\n";
+  return text;
+}
+
+TEST(OntologyCheck, RefusesALongChainOfSuperclassesAndTellsItsLength) {
+  EXPECT_EQ(faultsOf(chainOf(490)), "");
+  EXPECT_THAT(faultsOf(chainOf(5000)), AllOf(HasSubstr("more.ttl:5002:"), HasSubstr("C4999: it has a chain of 500"),
+                                             HasSubstr("superclasses above each other"), HasSubstr("write at most 500"),
+                                             Not(HasSubstr("cycle"))));
+}
+
+TEST(OntologyCheck, StillFindsACycleBelowALongChain) {
+  EXPECT_THAT(
+      faultsOf(chainOf(3) + "my:X a owl:Class ; rdfs:subClassOf my:C2 , my:Y .\n"
+                            "my:Y a owl:Class ; rdfs:subClassOf my:X .\nmy:Z a owl:Class ; rdfs:subClassOf my:X .\n"),
+      AllOf(HasSubstr("X is below Y and above it"), HasSubstr("Y is below X and above it"),
+            Not(HasSubstr("Z: the class is its own"))));
+}
+
 TEST(OntologyCheck, RefusesASuperclassThatIsDefinedNowhere) {
   EXPECT_THAT(foundFaults("clx:Bench a owl:Class ;\n  rdfs:subClassOf clx:StreetFurnitur .\n"),
               AllOf(HasSubstr("more.ttl:4:23: error: Bench: there is no class StreetFurnitur"),

@@ -25,7 +25,7 @@ std::vector<RdfSource> shipped() {
   return {readRdfSource(folder / "core.ttl"), readRdfSource(folder / "outdoor.ttl")};
 }
 
-std::vector<Diagnostic> faultsOf(const std::string& addition) {
+std::vector<Diagnostic> diagnosticsOf(const std::string& addition) {
   std::vector<RdfSource> sources = shipped();
   sources.push_back(
       {"@prefix clx: <https://w3id.org/cluxel/ontology#> .\n@prefix owl: <http://www.w3.org/2002/07/owl#> .\n"
@@ -103,7 +103,7 @@ TEST(Ontology, TakesAClassFromAFileOfItsOwn) {
 }
 
 TEST(Ontology, ShowsAllFaultsAtTheirPlaces) {
-  const auto faults = faultsOf(
+  const auto faults = diagnosticsOf(
       "clx:Bench a owl:Class ;\n  rdfs:subClassOf clx:Seat ;\n  clx:color \"red\" ;\n  clx:mayHavePart "
       "clx:TreeTronk .\n"
       "clx:Seat a owl:Class ; rdfs:subClassOf clx:Bench ; clx:mobility clx:Fixed .\n");
@@ -315,6 +315,19 @@ TEST(Closure, TellsItsMemoryWhileItRunsAndEndsWhenThatIsRefused) {
     if (bytes > 1'000'000) throw Refused();
   };
   EXPECT_THROW(inference.closure({50'000, 50'000'000, {refuse}}), Refused);
+}
+
+TEST(Closure, SaysThatSuperclassesAreTooManyWhenItEndsAtThem) {
+  std::string chain;
+  for (int i = 0; i < 200; ++i)
+    chain += ":c" + std::to_string(i) + " rdfs:subClassOf :c" + std::to_string(i + 1) + " .\n";
+  try {
+    Inference(chain).closure({5'000, 50'000'000});
+    FAIL() << "no error";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("too many superclasses lie above each other"));
+    EXPECT_THAT(error.what(), Not(HasSubstr("transitive")));
+  }
 }
 
 TEST(Closure, EndsAtItsLimitsWithTheProperty) {

@@ -7,6 +7,7 @@
 
 #include "cluxel/error.hpp"
 #include "rdf/ontology/ontology.hpp"
+#include "rdf/vocabulary.hpp"
 
 namespace cluxel::rdf {
 
@@ -28,11 +29,14 @@ class ClosureBounds {
   /// In the lists of a property, in those that are compared with the store, and in the store's pages.
   static constexpr std::size_t kBytesOfFact = 200;
   [[noreturn]] void fail(TermId property, const std::string& what) const {
+    const Term name = reader_.termOf(property);
+    const bool is_of_classes = name.text == vocabulary::rdfs("subClassOf") || name.text == vocabulary::rdf("type");
     throw Error(ErrorKind::BudgetExceeded,
-                "the closure was ended because it takes " + what + ", at the last of " +
-                    toNTriples(reader_.termOf(property)) +
-                    ": remove the statement that makes this property or one below it transitive, symmetric or inverse, "
-                    "or the cycle in which it lies");
+                "the closure was ended because it takes " + what + ", at the last of " + toNTriples(name) + ": " +
+                    (is_of_classes ? "too many superclasses lie above each other; make the chains of rdfs:subClassOf "
+                                     "shorter, or the classes fewer"
+                                   : "remove the statement that makes this property or one below it transitive, "
+                                     "symmetric or inverse, or the cycle in which it lies"));
   }
 
   const QuadReader& reader_;

@@ -8,9 +8,12 @@
 #include <cstdio>
 #include <map>
 
+#include "base/ascii.hpp"
+#include "base/utf8.hpp"
 #include "rdf/iri.hpp"
 #include "rdf/ontology/ontology.hpp"
 #include "rdf/ontology/ontology_statements.hpp"
+#include "rdf/ontology/superclass_chains.hpp"
 #include "rdf/vocabulary.hpp"
 
 namespace cluxel::rdf {
@@ -101,6 +104,44 @@ class NameCheck {
                                     clx("nearClass"), clx("within"),   clx("probability"), clx("unit")};
 };
 
+/// Turtle begins neither with a tag nor with the brace of JSON or of a graph.
+void requireTurtle(std::span<const RdfSource> sources) {
+  std::vector<Diagnostic> faults;
+  for (const RdfSource& source : sources) {
+    if (source.format != RdfFormat::Turtle) continue;
+    const std::string_view text = trimmed(withoutByteOrderMark(source.text));
+    const std::array kTags{"<?xml", "<!--", "<!DOCTYPE", "<rdf:RDF"};
+    const bool is_xml = std::any_of(kTags.begin(), kTags.end(), [&](const char* tag) { return text.starts_with(tag); });
+    if (is_xml || text.starts_with('{'))
+      faults.push_back(
+          {Severity::Error,
+           {.file = source.name, .line = 1, .column = 1},
+           std::string("this is ") + (is_xml ? "XML" : "JSON or TriG") + ", but an ontology is read as Turtle",
+           "convert the file to Turtle (.ttl)",
+           ""});
+  }
+  if (!faults.empty()) throw InputError(std::move(faults));
+}
+
+/// The closure takes time that grows with the cube of the length of a chain.
+constexpr std::size_t kMaxSuperclasses = 500;
+
+void checkChains(OntologyStatements& ontology) {
+  std::map<std::string, std::set<std::string>> above;
+  for (const OntologyStatement& statement : ontology.all())
+    if (statement.quad.predicate.text == rdfs("subClassOf") && statement.quad.object.kind == TermKind::Iri)
+      above[statement.quad.subject.text].insert(statement.quad.object.text);
+  const std::vector<std::string> chain = SuperclassChains(above).longest();
+  if (chain.size() <= kMaxSuperclasses + 1) return;
+  for (const OntologyStatement& statement : ontology.all())
+    if (statement.quad.subject.text == chain[0] && statement.quad.object.text == chain[1] &&
+        statement.quad.predicate.text == rdfs("subClassOf"))
+      return ontology.fault(statement,
+                            "it has a chain of " + std::to_string(chain.size() - 1) +
+                                " superclasses above each other, up to " + localName(chain.back()),
+                            "write at most " + std::to_string(kMaxSuperclasses) + " above each other");
+}
+
 /// Checks usual places, and that nothing has two values of a property that is read once.
 class ValueCheck {
  public:
@@ -184,10 +225,12 @@ class ValueCheck {
 }  // namespace
 
 void checkOntology(std::span<const RdfSource> sources) {
+  requireTurtle(sources);
   OntologyStatements ontology(sources);
   checkOntologyBasics(ontology);
   NameCheck(ontology).check();
   ValueCheck(ontology).check();
+  checkChains(ontology);
   ontology.requireNone();
 }
 

@@ -7,6 +7,7 @@
 #include "rdf/iri.hpp"
 #include "rdf/ontology/ontology.hpp"
 #include "rdf/ontology/ontology_statements.hpp"
+#include "rdf/ontology/superclass_chains.hpp"
 #include "rdf/vocabulary.hpp"
 
 namespace cluxel::rdf {
@@ -45,8 +46,11 @@ class BasicCheck {
   }
 
   void checkCycles() {
+    const SuperclassChains chains(above_);
     for (const OntologyStatement& statement : ontology_.all()) {
-      if (statement.quad.predicate.text != rdfs("subClassOf")) continue;
+      const bool may_lie_in_cycle =
+          statement.quad.predicate.text == rdfs("subClassOf") && !chains.isClear(statement.quad.subject.text);
+      if (!may_lie_in_cycle) continue;
       if (reaches(statement.quad.object.text, statement.quad.subject.text))
         ontology_.fault(statement, "the class is its own superclass: " + localName(statement.quad.subject.text) +
                                        " is below " + localName(statement.quad.object.text) + " and above it");
