@@ -128,8 +128,10 @@ void bindSummary(py::module_& module) {
       .def_readonly("objects", &MapSummary::objects, "Number of objects.")
       .def_readonly("points", &MapSummary::points, "Number of points.")
       .def_readonly("quads", &MapSummary::quads, "Number of RDF statements.")
-      .def_readonly("objects_by_class", &MapSummary::objects_by_class,
-                    "dict from local name of a class, such as 'Tree', to number of objects.")
+      .def_readonly(
+          "objects_by_class", &MapSummary::objects_by_class,
+          "dict from local name of a class, such as 'Tree', to number of objects; from its IRI when that name is "
+          "another class's.")
       .def("__repr__", [](const MapSummary& summary) {
         return "<cluxel.MapSummary " + std::to_string(summary.clouds) + " scans, " + std::to_string(summary.points) +
                " points, " + std::to_string(summary.objects) + " objects, " + std::to_string(summary.quads) + " quads>";

@@ -36,7 +36,7 @@ enum class ChangeKind : std::uint8_t { Added, Gone, Changed, Split, Joined, Rede
 struct ObjectChange {
   ChangeKind kind = ChangeKind::Changed;
   std::string iri;                        ///< of Gone: the IRI that it had
-  std::string class_name;                 ///< local name: "Tree"
+  std::string class_name;                 ///< "Tree"; by IRI if that name is another's
   std::vector<std::string> derived_from;  ///< IRIs of Changed, Split and Joined before the change
 };
 

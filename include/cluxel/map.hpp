@@ -79,7 +79,7 @@ struct MapSummary {
   std::string inputs_hash;   ///< of ontology, rules, model and parameters
   std::size_t clouds = 0, objects = 0;
   std::uint64_t points = 0, quads = 0;
-  std::map<std::string, std::size_t> objects_by_class;  ///< by local name of the class: "Tree"
+  std::map<std::string, std::size_t> objects_by_class;  ///< by local name; by IRI if that is another's
 };
 
 /// An open map file.

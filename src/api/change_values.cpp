@@ -15,9 +15,10 @@ namespace cluxel {
 
 namespace {
 
-std::map<ContentHash, std::string> classNames(const std::vector<mapping::ObjectMembers>& objects) {
+std::map<ContentHash, std::string> classNames(const std::vector<mapping::ObjectMembers>& objects,
+                                              const rdf::ClassNames& class_names) {
   std::map<ContentHash, std::string> names;
-  for (const mapping::ObjectMembers& object : objects) names.emplace(object.id, mapping::localName(object.class_iri));
+  for (const mapping::ObjectMembers& object : objects) names.emplace(object.id, class_names.nameOf(object.class_iri));
   return names;
 }
 
@@ -49,7 +50,8 @@ MapChanges changesOf(const mapping::ChangeReport& report) {
   changes.scans_moved = report.scans_moved;
   changes.tiles_changed = report.tiles_changed;
   changes.objects_unchanged = report.objects.unchanged;
-  const auto before = classNames(report.before), after = classNames(report.after);
+  const auto before = classNames(report.before, report.class_names),
+             after = classNames(report.after, report.class_names);
   const auto add = [&](ChangeKind kind, const ContentHash& id, const std::string& class_name,
                        const std::vector<ContentHash>& from) {
     ObjectChange change{kind, rdf::iriOfObject(id), class_name, {}};
@@ -63,7 +65,7 @@ MapChanges changesOf(const mapping::ChangeReport& report) {
   for (const auto& object : report.objects.split) add(ChangeKind::Split, object.id, after.at(object.id), object.from);
   for (const auto& object : report.objects.joined) add(ChangeKind::Joined, object.id, after.at(object.id), object.from);
   for (const auto& object : report.objects.redecided)
-    add(ChangeKind::Redecided, object.after.id, mapping::localName(object.after.class_iri), {});
+    add(ChangeKind::Redecided, object.after.id, report.class_names.nameOf(object.after.class_iri), {});
   return changes;
 }
 

@@ -23,6 +23,7 @@
 #include "sparql/query_engine.hpp"
 #include "sparql/syntax/parser.hpp"
 #include "tasks/explanation.hpp"
+#include "tasks/named_class.hpp"
 
 namespace cluxel {
 
@@ -273,7 +274,10 @@ std::vector<Object> Map::objects() const {
 }
 
 std::vector<Object> Map::objects(std::string_view class_name) const {
-  return objectsOf(impl_->newestQuads(), class_name);
+  const auto namespaces = [&] {
+    return impl_->reading([](const mapping::MapReader& map) { return tasks::namespacesOf(map.inputs()); });
+  };
+  return objectsOf(impl_->newestQuads(), class_name, namespaces);
 }
 
 std::vector<Cloud> Map::clouds() const {

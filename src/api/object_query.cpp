@@ -8,7 +8,7 @@
 #include "rdf/iri.hpp"
 #include "rdf/vocabulary.hpp"
 #include "sparql/query_engine.hpp"
-#include "tasks/ways/route.hpp"
+#include "tasks/named_class.hpp"
 
 namespace cluxel {
 
@@ -89,9 +89,10 @@ std::vector<Object> objectsOf(const rdf::QuadReader& reader) {
   return objectsOf(reader, ontologyViewOf(reader));
 }
 
-std::vector<Object> objectsOf(const rdf::QuadReader& reader, std::string_view class_name) {
+std::vector<Object> objectsOf(const rdf::QuadReader& reader, std::string_view class_name,
+                              const std::function<tasks::Namespaces()>& namespaces) {
   const rdf::OntologyView ontology = ontologyViewOf(reader);
-  const std::string class_iri = tasks::classNamed(ontology, std::string(class_name));
+  const std::string class_iri = tasks::classNamed(ontology, std::string(class_name), namespaces);
   std::vector<Object> objects = objectsOf(reader, ontology);
   std::erase_if(objects, [&](const Object& object) { return !ontology.isA(object.class_iri, class_iri); });
   return objects;

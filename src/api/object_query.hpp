@@ -2,6 +2,7 @@
 // Objects of a map as values, read from its observed facts.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -9,12 +10,14 @@
 #include "cluxel/object.hpp"
 #include "rdf/ontology/ontology.hpp"
 #include "rdf/store/quad_store.hpp"
+#include "tasks/named_class.hpp"
 
 namespace cluxel {
 
 /// All objects with their parts, sorted by IRI. Cost O(objects).
 std::vector<Object> objectsOf(const rdf::QuadReader& reader);
-/// Those of a class or its subclasses. Throws Error (NotFound) for a class that the ontology does not know.
-std::vector<Object> objectsOf(const rdf::QuadReader& reader, std::string_view class_name);
+/// Those of a class, written as for classNamed(), or its subclasses. Throws Error (NotFound) as that does.
+std::vector<Object> objectsOf(const rdf::QuadReader& reader, std::string_view class_name,
+                              const std::function<tasks::Namespaces()>& namespaces);
 
 }  // namespace cluxel

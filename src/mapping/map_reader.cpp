@@ -26,6 +26,7 @@ struct MapReader::Impl {
   MapState state;
   std::optional<MapInputs> inputs;
   std::optional<perception::LabelModel> model;
+  std::optional<rdf::ClassNames> class_names;
   std::optional<TileStages> stages;
   std::optional<perception::Scene> scene;
   std::optional<std::vector<rules::SemanticObject>> objects;
@@ -122,16 +123,23 @@ MapSummary MapReader::summary() const {
     ++summary.clouds;
     summary.points += cloud.point_count;
   }
+  std::map<std::string, std::size_t> by_iri;
   forEachRecord(impl_->transaction, [&](const ContentHash&, const ObjectRecord& record) {
-    ++summary.objects_by_class[localName(record.class_iri)];
+    ++by_iri[record.class_iri];
     ++summary.objects;
   });
+  for (const auto& [iri, count] : by_iri) summary.objects_by_class[classNames().nameOf(iri)] = count;
   summary.quads = impl_->quads.size();
   return summary;
 }
 
 bool MapReader::isFinished() const {
   return impl_->state.is_finished;
+}
+
+const rdf::ClassNames& MapReader::classNames() const {
+  if (!impl_->class_names) impl_->class_names = rdf::classNamesOf(impl_->quads);
+  return *impl_->class_names;
 }
 
 std::vector<Cloud> MapReader::clouds() const {

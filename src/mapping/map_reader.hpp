@@ -14,6 +14,7 @@
 #include "mapping/statements/statement.hpp"
 #include "perception/segments/scene.hpp"
 #include "rdf/file/space/layer_sizes.hpp"
+#include "rdf/ontology/class_names.hpp"
 #include "rdf/store/quad_store.hpp"
 #include "rules/objects/semantic_object.hpp"
 
@@ -36,7 +37,7 @@ struct MapSummary {
   std::string inputs_hash;
   std::size_t clouds = 0, objects = 0;
   std::uint64_t points = 0, quads = 0;
-  std::map<std::string, std::size_t> objects_by_class;  ///< by local name of the class
+  std::map<std::string, std::size_t> objects_by_class;  ///< by the name of the class in classNames()
 };
 
 /// The cluxel, label and object of each point of a cloud. The arrays are parallel to the cloud's points.
@@ -85,6 +86,8 @@ class MapReader {
   const std::vector<rules::SemanticObject>& objects() const;
   /// The class of an object by its number in objects(), which need not be read for it.
   std::string classOf(std::uint32_t object) const;
+  /// What the classes of the map's ontology and objects are called in lists and counts. Read by the first call.
+  const rdf::ClassNames& classNames() const;
   /// Those that operator statements changed or removed, as the rules made them.
   const std::vector<OverruledObject>& overruled() const;
   /// The object as the rules made it: itself where nothing was stated.

@@ -36,6 +36,7 @@ std::shared_ptr<const ObjectTable> objectsOf(const rdf::QuadReader& snapshot) {
   auto table = std::make_shared<ObjectTable>();
   table->objects = cluxel::objectsOf(snapshot);
   table->ontology = ontologyViewOf(snapshot);
+  table->class_names = rdf::ClassNames(table->ontology.classNames());
   snapshot.keep(kName, table);
   return table;
 }

@@ -11,6 +11,7 @@
 
 #include "cluxel/object.hpp"
 #include "mapping/newest_map.hpp"
+#include "rdf/ontology/class_names.hpp"
 #include "rdf/ontology/ontology.hpp"
 
 namespace cluxel::serve {
@@ -19,6 +20,7 @@ namespace cluxel::serve {
 struct ObjectTable {
   std::vector<Object> objects;  ///< sorted by IRI
   rdf::OntologyView ontology;
+  rdf::ClassNames class_names;
 };
 
 /// Thread-safe.

@@ -19,6 +19,7 @@
 #include "rules/explain/part_run.hpp"
 #include "rules/explain/path_tree.hpp"
 #include "rules/explain/why_not.hpp"
+#include "tasks/named_class.hpp"
 #include "tasks/stated_of_things.hpp"
 #include "tasks/thing_names.hpp"
 
@@ -211,7 +212,7 @@ WhyNotOfThing whyNotInMap(const mapping::MapReader& map, const rules::RuleSet& r
 WhyNotOfThing whyNotOf(const mapping::MapReader& map, const rules::RuleSet& rules, const mapping::MapInputs& inputs,
                        const std::string& written, const std::string& class_name) {
   const NamedThing named = thingNamed(map, written);
-  const std::string class_iri = classNamed(rules, class_name);
+  const std::string class_iri = classNamed(map, class_name);
   const Explainable what{named.object, named.primitive, {}};
   const bool reaches_far = named.object && map.isClassWide(*named.object);
   auto around = reaches_far ? std::nullopt : whyNotAround(map, rules, what, class_iri);
@@ -221,26 +222,6 @@ WhyNotOfThing whyNotOf(const mapping::MapReader& map, const rules::RuleSet& rule
 }
 
 }  // namespace
-
-std::string classNamed(const rules::RuleSet& rules, const std::string& written) {
-  const std::string name =
-      written.starts_with('<') && written.ends_with('>') ? written.substr(1, written.size() - 2) : written;
-  std::vector<std::string> known;
-  for (const rules::ClassEntry& entry : rules.catalogue.classes) {
-    const std::string local = mapping::localName(entry.iri);
-    if (name == entry.iri || name == local || name == rules.shorten(entry.iri)) return entry.iri;
-    known.push_back(local);
-  }
-  const std::string hint = suggestion(name, known);
-  throw Error(ErrorKind::NotFound, "the ontology knows no class '" + name + "'" + (hint.empty() ? "" : "; " + hint));
-}
-
-std::string classNamed(const rules::ClassCatalogue& classes, const std::string& written) {
-  rules::RuleSet rules;
-  rules.catalogue = classes;
-  rules.prefixes["clx"] = rdf::vocabulary::kClx;
-  return classNamed(rules, written);
-}
 
 ExplanationTexts explainWhyNot(const mapping::MapReader& map, const std::string& name, const std::string& class_name) {
   const mapping::MapInputs inputs = map.inputs();

@@ -20,12 +20,8 @@ struct ExplanationTexts {
 /// it, and reads no more of the map where that tells. Files of rules are named relative to the folder of the first.
 /// Throws Error (NotFound) when nothing or more than one resource has the name.
 ExplanationTexts explainThing(const mapping::MapReader& map, const std::string& name);
-/// The IRI of the class that is written as "Tree", "clx:Tree" or an IRI. Throws Error (NotFound) when there is none.
-std::string classNamed(const rules::RuleSet& rules, const std::string& written);
-/// The same with the local name, clx: or an IRI only.
-std::string classNamed(const rules::ClassCatalogue& classes, const std::string& written);
 
-/// Why the thing is not of a class ("StreetSign", "clx:StreetSign" or an IRI): how near each rule of the class comes to
+/// Why the thing is not of a class, which is written as for classNamed(): how near each rule of the class comes to
 /// it. Runs the rules twice over the tiles around the thing; over the whole map when these may not be enough. Throws
 /// Error (NotFound) for a class that the ontology does not know, too.
 ExplanationTexts explainWhyNot(const mapping::MapReader& map, const std::string& name, const std::string& class_name);

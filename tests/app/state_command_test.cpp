@@ -69,6 +69,31 @@ TEST_F(StateCommand, ALabelDoesNotControlTheTerminal) {
   EXPECT_THAT(state("--list").out, HasSubstr("a\\u001B[31mred\\u0007\\u009B"));
 }
 
+/// A class of another namespace is called Tree too: names mean that of the vocabulary, and counts keep them apart.
+TEST_F(StateCommand, TakesTheClassOfTheVocabularyBeforeANamesake) {
+  const fs::path own = path("town.ttl");
+  writeFile(own,
+            "@prefix clx: <https://w3id.org/cluxel/ontology#> . @prefix my: <http://t.example/o#> .\n"
+            "@prefix owl: <http://www.w3.org/2002/07/owl#> . @prefix rdfs: <http://www.w3.org/2000/01/rdf-schema#> .\n"
+            "my:Tree a owl:Class ; rdfs:subClassOf clx:Plant . my:Car a owl:Class ; rdfs:subClassOf clx:Vehicle .\n"
+            "<http://t.example/p/Car> a owl:Class ; rdfs:subClassOf clx:Vehicle .\n");
+  const Outcome applied = run("rules apply " + map().string() + " --ontology core.ttl outdoor.ttl " + own.string());
+  ASSERT_EQ(applied.code, 0) << applied.err;
+  const auto trees = [] {
+    const nlohmann::json by_class =
+        nlohmann::json::parse(run("info " + map().string() + " --json").out)["objects_by_class"];
+    return std::pair(by_class.value("Tree", 0), by_class.value("http://t.example/o#Tree", 0));
+  };
+  const auto before = trees();
+  const std::string tree = "--object " + one("Tree");
+  EXPECT_THAT(state(tree + " --is-not Tree").out, HasSubstr("is not clx:Tree"));
+  const Outcome town = state("--object " + one("Tree") + " --is my:Tree");
+  EXPECT_EQ(town.code, 0) << town.err;
+  EXPECT_THAT(town.out, HasSubstr("1 changed: 1 http://t.example/o#Tree"));
+  EXPECT_EQ(trees(), std::pair(before.first - 2, 1));
+  expectError(state("--object " + one("Tree") + " --is Car"), 3, "'Car' names 2 classes of the map's ontology");
+}
+
 TEST_F(StateCommand, TellsWhichObjectAStatementIsAbout) {
   const std::string tree = one("Tree"), other = path("other.clx").string(), merged = path("merged.clx").string();
   fs::copy_file(map(), other, fs::copy_options::overwrite_existing);
@@ -118,7 +143,7 @@ TEST_F(StateCommand, RefusesWhatCannotBeMeant) {
   const std::string tree = "--object " + one("Tree");
   expectError(state(tree + " --is clx:TreeTrunk"), 2, "is no class of objects");
   expectError(state(tree + " --is clx:Object"), 2, "tells them apart");
-  expectError(state(tree + " --is clx:Unicorn"), 3, "knows no class");
+  expectError(state(tree + " --is clx:Unicorn"), 3, "has no class");
   expectError(state(tree + " --label \"\""), 2, "the text is empty");
   expectError(state(tree + " --note \"\xff\""), 2, "the text is not UTF-8");
   expectError(state("--ignore-region 0,0,1,1,2,2"), 2, "has no area");

@@ -24,8 +24,8 @@ TEST(JsonOfAnObject, TellsSinceWhenItIsGone) {
   const rdf::QuadReader quads(environment->read());
   Object gone, there;
   gone.iri = "http://e/gone", there.iri = "http://e/there";
-  EXPECT_EQ(objectJson(gone, quads).value("seenThrough", ""), "2023-11-15T22:13:20.000000Z");
-  EXPECT_FALSE(objectJson(there, quads).contains("seenThrough"));
+  EXPECT_EQ(objectJson(gone, quads, {}).value("seenThrough", ""), "2023-11-15T22:13:20.000000Z");
+  EXPECT_FALSE(objectJson(there, quads, {}).contains("seenThrough"));
 }
 
 }  // namespace

@@ -68,6 +68,22 @@ TEST(TruthClasses, AreTheOwnOnesOrTheNearestAbove) {
   EXPECT_EQ(truthClassesOf(objects, {{}}, catalogue), Numbers(objects.size(), 0));
 }
 
+TEST(TruthClasses, AreNotThoseOfANamesakeInAnotherNamespace) {
+  using vocabulary::clx;
+  const ClassCatalogue catalogue{{{clx("Tree"), {clx("Plant")}, {}},
+                                  {clx("Plant"), {}, {}},
+                                  {"http://town/Tree", {clx("Plant")}, {}},
+                                  {"http://town/Kiosk", {}, {}},
+                                  {"http://town/Car", {clx("Plant")}, {}},
+                                  {"http://store/Car", {clx("Plant")}, {}}}};
+  std::vector<SemanticObject> objects;
+  for (const std::string& iri : {clx("Tree"), std::string("http://town/Tree"), std::string("http://town/Kiosk"),
+                                 std::string("http://town/Car"), std::string("http://store/Car")})
+    objects.emplace_back().class_iri = iri;
+  EXPECT_EQ(truthClassesOf(objects, {{"Tree", "Kiosk", "Car", "Plant"}}, catalogue),
+            (std::vector<std::size_t>{0, 3, 1, 3, 3}));
+}
+
 TEST(TruthClasses, CountAsTheTruthSaysBeforeTheirOwnName) {
   using vocabulary::clx;
   const ClassCatalogue catalogue{{{clx("Structure"), {}, {}},

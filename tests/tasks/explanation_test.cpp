@@ -18,6 +18,7 @@
 #include "rules/explain/why_not.hpp"
 #include "rules/language/rule_loader.hpp"
 #include "tasks/campus_map_fixture.hpp"
+#include "tasks/named_class.hpp"
 #include "test_paths.hpp"
 
 namespace cluxel::tasks {
@@ -166,7 +167,7 @@ TEST_F(ExplanationOfALongMap, WhyNotReadsSomeTilesAndSaysWhatTheWholeMapSays) {
     const auto owner = std::find_if(made.objects.begin(), made.objects.end(),
                                     [&](const SemanticObject& other) { return other.id == object.id; });
     ASSERT_NE(owner, made.objects.end());
-    const std::string asked = kClasses[number++ % kClasses.size()], class_iri = classNamed(rules, asked);
+    const std::string asked = kClasses[number++ % kClasses.size()], class_iri = classNamed(*map, asked);
     if (!isToldInPart(*map, object, rules, class_iri)) continue;
     ++in_part;
     auto said = considerFor(map->scene(), rules, {}, class_iri, primitivesOf(object));

@@ -56,6 +56,21 @@ TEST(LabelMapCheck, TellsOfClassesThatMatchNoAnswer) {
   }
 }
 
+TEST(LabelMapCheck, TellsWhichClassALocalNameOfSeveralMeans) {
+  const LabelMap labels(
+      parseLabelMap("labels: { 1: { name: x, object: Tree }, 2: { name: y, object: Car } }\n", "my.yaml"));
+  ClassCatalogue catalogue = smallCatalogue();
+  for (const char* iri : {"http://town/Tree", "http://town/Car", "http://store/Car"})
+    catalogue.classes.push_back({iri, {vocabulary::clx("Object")}, {}});
+  const std::vector<std::string> doubts = LabelMapCheck(labels, catalogue, "my.yaml").run();
+  ASSERT_EQ(doubts.size(), 2U);
+  EXPECT_EQ(doubts[0], "my.yaml: 'Tree' means <" + vocabulary::clx("Tree") +
+                           "> alone; answers of <http://town/Tree> count as their superclass");
+  EXPECT_EQ(doubts[1],
+            "my.yaml: 'Car' is the local name of several classes in the ontology of the map: <http://store/Car>, "
+            "<http://town/Car>; no answer is of it, and each counts as its superclass");
+}
+
 TEST(LabelMapCheck, TakesClassesOfTheTruthThatAnswersCountAs) {
   EXPECT_TRUE(
       doubtsAbout("counts_as: { Tree: StaticOrPlant }\nlabels: { 1: { name: x, object: StaticOrPlant } }\n").empty());

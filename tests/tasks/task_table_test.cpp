@@ -173,15 +173,14 @@ TEST(QuestionsOfACampus, KindsOfAnInventoryAreWrittenAsClasses) {
   for (const std::string& written :
        {std::string("Sidewalk"), std::string("sidewalk"), std::string("clx:Sidewalk"), vocabulary::clx("Sidewalk")})
     EXPECT_EQ(kindsOf({written}), (std::map<std::string, std::size_t>{{"Sidewalk", all.at("Sidewalk")}})) << written;
-  const OntologyView ontology = ontologyViewOf(map.quads());
   for (const std::string& written :
        {std::string("ParkingRow"), std::string("parking row"), std::string("clx:ParkingRow")}) {
-    const InventoryParams params = inventoryOfKinds(ontology, {written, "street lamp"});
+    const InventoryParams params = inventoryOfKinds(map, {written, "street lamp"});
     EXPECT_TRUE(params.with_rows) << written;
     EXPECT_FALSE(params.with_sidewalks);
     EXPECT_EQ(params.classes, std::vector<std::string>{vocabulary::clx("StreetLamp")});
   }
-  EXPECT_THROW(inventoryOfKinds(ontology, {"Sidewalc"}), Error);
+  EXPECT_THROW(inventoryOfKinds(map, {"Sidewalc"}), Error);
 }
 
 /// Turtle of usual places of signs: each a probability and a distance, as they are written.

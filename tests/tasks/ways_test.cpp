@@ -217,25 +217,6 @@ TEST(Walks, EndAtTheirReachAndFindWhatStandsBeside) {
   EXPECT_TRUE(objectsWithin(terrain, walkLengths(passable(terrain), {0.5, 1.5}, 3), {false}).empty());
 }
 
-TEST(ClassNames, AreLocalNamesIrisOrLabelsOfOneClass) {
-  rdf::OntologyView view;
-  const auto add = [&](const char* name, std::map<std::string, std::string> labels) {
-    view.classes.emplace_back();
-    view.classes.back().iri = rdf::vocabulary::clx(name);
-    view.classes.back().labels = std::move(labels);
-  };
-  add("Bench", {{"en", "bench"}, {"de", "Bank"}});
-  add("Bureau", {{"de", "Bank"}});
-  add("StreetSign", {{"en", "street sign"}, {"de", "Straßenschild"}});
-  const std::string sign = rdf::vocabulary::clx("StreetSign");
-  for (const std::string& written :
-       {std::string("StreetSign"), std::string("clx:StreetSign"), "<" + sign + ">", sign, std::string("Street sign"),
-        std::string("street-sign "), std::string("Straßenschild")})
-    EXPECT_EQ(classNamed(view, written), sign) << written;
-  EXPECT_THROW(classNamed(view, "Bank"), Error) << "the label of two";
-  EXPECT_THROW(classNamed(view, "Schild"), Error);
-}
-
 TEST(CostMap, IsAnImageFromTheTopWithItsPlaceInYaml) {
   TerrainGrid terrain = terrainFrom({".?", "#."}, 0.5);
   terrain.frame.min_x = -3;

@@ -15,9 +15,9 @@ using mapping::ChangeReport;
 using mapping::DerivedObject;
 using mapping::ObjectMembers;
 
-std::map<ContentHash, std::string> classesOf(const std::vector<ObjectMembers>& objects) {
+std::map<ContentHash, std::string> classesOf(const std::vector<ObjectMembers>& objects, const rdf::ClassNames& names) {
   std::map<ContentHash, std::string> classes;
-  for (const ObjectMembers& object : objects) classes.emplace(object.id, mapping::localName(object.class_iri));
+  for (const ObjectMembers& object : objects) classes.emplace(object.id, names.nameOf(object.class_iri));
   return classes;
 }
 
@@ -48,14 +48,14 @@ Json objectsJson(const std::vector<DerivedObject>& objects, const std::map<Conte
   return json;
 }
 
-Json redecidedJson(const std::vector<mapping::RedecidedObject>& objects) {
+Json redecidedJson(const std::vector<mapping::RedecidedObject>& objects, const rdf::ClassNames& names) {
   const auto decisionOf = [](const ObjectMembers& object) {
     return Json{{"rule", object.rule_id}, {"confidence", object.confidence}};
   };
   Json json = Json::array();
   for (const auto& [before, after] : objects)
     json.push_back({{"object", after.id.hex()},
-                    {"class", mapping::localName(after.class_iri)},
+                    {"class", names.nameOf(after.class_iri)},
                     {"other_parts", before.parts != after.parts},
                     {"before", decisionOf(before)},
                     {"after", decisionOf(after)}});
@@ -69,7 +69,7 @@ Json statementsJson(const std::vector<mapping::StatementOutcome>& outcomes) {
 }
 
 void printJsonReport(const fs::path& map, const ChangeReport& report, bool dry_run) {
-  const auto before = classesOf(report.before), after = classesOf(report.after);
+  const auto before = classesOf(report.before, report.class_names), after = classesOf(report.after, report.class_names);
   printJson(Json{{"map", map.string()},
                  {"dry_run", dry_run},
                  {"has_changes", report.has_changes},
@@ -89,20 +89,20 @@ void printJsonReport(const fs::path& map, const ChangeReport& report, bool dry_r
                   {{"unchanged", report.objects.unchanged},
                    {"added", objectsJson(report.objects.added, after)},
                    {"gone", objectsJson(report.objects.gone, before)},
-                   {"redecided", redecidedJson(report.objects.redecided)},
+                   {"redecided", redecidedJson(report.objects.redecided, report.class_names)},
                    {"changed", objectsJson(report.objects.changed, after, before)},
                    {"split", objectsJson(report.objects.split, after, before)},
                    {"joined", objectsJson(report.objects.joined, after, before)}}}});
 }
 
 /// ": 3 Tree, 1 Bush (other parts: 3, another rule: 1, another confidence: 2)".
-std::string redecidedByClass(const std::vector<mapping::RedecidedObject>& objects) {
+std::string redecidedByClass(const std::vector<mapping::RedecidedObject>& objects, const rdf::ClassNames& names) {
   if (objects.empty()) return "";
   std::map<ContentHash, std::string> classes;
   std::vector<ContentHash> ids;
   std::size_t parts = 0, rules = 0, confidences = 0;
   for (const auto& [before, after] : objects) {
-    classes.emplace(after.id, mapping::localName(after.class_iri));
+    classes.emplace(after.id, names.nameOf(after.class_iri));
     ids.push_back(after.id);
     parts += before.parts != after.parts ? 1 : 0;
     rules += before.rule_id != after.rule_id ? 1 : 0;
@@ -128,7 +128,7 @@ void printChange(const fs::path& map, const ChangeReport& report, const mapping:
     std::printf("%s: nothing changes%s\n", map.c_str(), report.scans_already_there > 0 ? "; all scans are there" : "");
     return;
   }
-  const auto before = classesOf(report.before), after = classesOf(report.after);
+  const auto before = classesOf(report.before, report.class_names), after = classesOf(report.after, report.class_names);
   const mapping::ObjectChanges& objects = report.objects;
   const auto own = [](const ContentHash& id) { return id; };
   const auto derived = [](const DerivedObject& object) { return object.id; };
@@ -138,7 +138,8 @@ void printChange(const fs::path& map, const ChangeReport& report, const mapping:
       map.c_str(), params.dry_run ? " (dry run, nothing written)" : "", report.scans_added, report.scans_removed,
       report.scans_moved, report.tiles_changed, report.tiles_decided, report.tiles);
   std::printf("objects: %zu unchanged\n", objects.unchanged);
-  std::printf("  %zu redecided%s\n", objects.redecided.size(), redecidedByClass(objects.redecided).c_str());
+  std::printf("  %zu redecided%s\n", objects.redecided.size(),
+              redecidedByClass(objects.redecided, report.class_names).c_str());
   std::printf("  %zu added%s\n", objects.added.size(), byClass(objects.added, after, own).c_str());
   std::printf("  %zu gone%s\n", objects.gone.size(), byClass(objects.gone, before, own).c_str());
   std::printf("  %zu changed%s\n", objects.changed.size(), byClass(objects.changed, after, derived).c_str());

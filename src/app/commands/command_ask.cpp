@@ -120,7 +120,7 @@ ExitCode inventory(const InventoryArguments& arguments, Session& session) {
   noteUnfinished(arguments.map, map.isFinished(), arguments.allow_unfinished, session);
   const mapping::MapInputs inputs = map.inputs();
   const rdf::OntologyView ontology = rdf::ontologyViewOf(map.quads());
-  const tasks::InventoryParams params = tasks::inventoryOfKinds(ontology, arguments.kinds);
+  const tasks::InventoryParams params = tasks::inventoryOfKinds(map, arguments.kinds);
   if (!arguments.register_file.empty()) {
     const auto entries = tasks::readRegister(arguments.register_file, inputs, ontology);
     return printAnswer(map, registerAnswer(map, params, entries, arguments.comparison), arguments.output, session);

@@ -12,7 +12,7 @@
 #include "mapping/facts/semantic_layer.hpp"
 #include "rdf/map_iris.hpp"
 #include "rules/language/rule_loader.hpp"
-#include "tasks/explanation.hpp"
+#include "tasks/named_class.hpp"
 #include "tasks/thing_names.hpp"
 
 namespace cluxel::app {
@@ -125,9 +125,7 @@ std::vector<std::string> addAboutObject(const mapping::MapReader& map, const Sta
   const auto add = [&](StatementKind kind, const std::string& property, const Term& value) {
     edit.added.push_back({kind, property, value, anchor, {}, class_iri});
   };
-  const auto classOf = [&](const std::string& name) {
-    return Term::iri(tasks::classNamed(classCatalogueOf(map.inputs().ontology), name));
-  };
+  const auto classOf = [&](const std::string& name) { return Term::iri(tasks::classNamed(map, name)); };
   if (!options.is.empty()) add(StatementKind::Is, "", classOf(options.is));
   if (!options.is_not.empty()) add(StatementKind::IsNot, "", classOf(options.is_not));
   if (options.remove) add(StatementKind::Remove, "", {});

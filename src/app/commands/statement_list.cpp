@@ -5,12 +5,17 @@
 #include "base/utf8.hpp"
 #include "mapping/map_reader.hpp"
 #include "rdf/map_iris.hpp"
+#include "rdf/vocabulary.hpp"
 
 namespace cluxel::app {
 
 namespace {
 
 using mapping::KnownStatement;
+
+std::string classText(const std::string& iri) {
+  return iri.starts_with(rdf::vocabulary::kClx) ? mapping::localName(iri) : "<" + iri + ">";
+}
 
 std::string lineOfKnown(const KnownStatement& known) {
   std::string line = known.statement.id().hex() + "  " + textOf(known.statement) + "  " + known.effect;
@@ -19,7 +24,7 @@ std::string lineOfKnown(const KnownStatement& known) {
   if (!known.object.empty())
     line += (is_applied ? " to object/" : ", about object/") + mapping::localName(known.object);
   if (known.contradicts) line += ", against the rules";
-  if (known.contradicts && !known.rules_class.empty()) line += ", which say " + mapping::localName(known.rules_class);
+  if (known.contradicts && !known.rules_class.empty()) line += ", which say " + classText(known.rules_class);
   if (!known.author.empty()) line += "; by " + known.author;
   if (!known.stated_at.empty()) line += (known.author.empty() ? "; " : " ") + known.stated_at;
   return line;

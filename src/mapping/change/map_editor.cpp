@@ -275,6 +275,7 @@ void MapEditor::note(SemanticUpdate update) {
 }
 
 ChangeReport MapEditor::takeReport() {
+  report_.class_names = namesOf(parsed_.rules.catalogue);
   if (!defers_things_ && report_.has_changes) {
     DifferentObjects different = std::exchange(difference_, {}).take();
     report_.before = std::move(different.before), report_.after = std::move(different.after);

@@ -52,6 +52,7 @@ struct ChangeReport {
   std::size_t local_commits = 0;             ///< of which objects and facts were computed around the change alone
   std::size_t maps_taken_over = 0;           ///< of a merge: maps of which objects and facts were taken
   rdf::FreeSpace free_space;                 ///< of the map afterwards
+  rdf::ClassNames class_names;               ///< of the map's ontology afterwards
 };
 
 /// Throws the Errors of MapEditor, before anything else is read. Cost: reads the inputs of the map.

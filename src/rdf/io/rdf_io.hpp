@@ -9,6 +9,8 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "cluxel/term.hpp"
 #include "rdf/store/quad_store.hpp"
@@ -43,6 +45,10 @@ RdfSource openRdfSource(const std::filesystem::path& file, const Term& graph = T
 /// equal sources give equal labels, different sources disjoint ones. Throws one InputError with all faults as
 /// file:line:col; `take` may have been called before. Cost: about a million statements per second for N-Quads.
 void parseRdf(const RdfSource& source, const std::function<void(const Quad&)>& take);
+
+/// The prefixes that a source declares, in document order, without the colon; a later one of the same name goes before.
+/// Throws as parseRdf().
+std::vector<std::pair<std::string, std::string>> prefixesIn(const RdfSource& source);
 
 /// Parses into a store and returns the number of statements. After an error the transaction must be dropped.
 std::uint64_t loadRdf(const RdfSource& source, QuadWriter& writer);

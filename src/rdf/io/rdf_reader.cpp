@@ -125,7 +125,12 @@ class Reading {
 
   void run();
 
+  std::vector<std::pair<std::string, std::string>> prefixes;  ///< that were declared so far
+
  private:
+  static void onNamespace(void* reading, raptor_namespace* space) {
+    static_cast<Reading*>(reading)->takePrefix(*space);
+  }
   static void onStatement(void* reading, raptor_statement* statement) {
     static_cast<Reading*>(reading)->take(*statement);
   }
@@ -142,6 +147,19 @@ class Reading {
       else
         quad_.graph = source_.graph;
       take_(quad_);
+    } catch (...) {
+      failure_ = std::current_exception();
+      raptor_parser_parse_abort(parser_.get());
+    }
+  }
+
+  void takePrefix(const raptor_namespace& space) {
+    if (failure_) return;
+    try {
+      raptor_uri* uri = raptor_namespace_get_uri(&space);
+      std::size_t size = 0;
+      const unsigned char* prefix = raptor_namespace_get_counted_prefix(&space, &size);
+      if (uri != nullptr) prefixes.emplace_back(prefix == nullptr ? "" : viewOf(prefix, size), viewOf(uri));
     } catch (...) {
       failure_ = std::current_exception();
       raptor_parser_parse_abort(parser_.get());
@@ -208,6 +226,7 @@ void Reading::start() {
   parser_.reset(raptor_new_parser(world_.get(), parserName(source_.format)));
   if (!parser_) throw std::bad_alloc();
   raptor_parser_set_statement_handler(parser_.get(), this, &Reading::onStatement);
+  raptor_parser_set_namespace_handler(parser_.get(), this, &Reading::onNamespace);
   raptor_parser_set_option(parser_.get(), RAPTOR_OPTION_NO_NET, nullptr, 1);
   raptor_parser_set_option(parser_.get(), RAPTOR_OPTION_NO_FILE, nullptr, 1);
   raptor_parser_parse_start(parser_.get(), base_.get());
@@ -250,6 +269,13 @@ void Reading::run() {
 void parseRdf(const RdfSource& source, const std::function<void(const Quad&)>& take) {
   if (source.format == RdfFormat::RdfXml) refuseHostileText(source, {source.text});
   Reading(source, take).run();
+}
+
+std::vector<std::pair<std::string, std::string>> prefixesIn(const RdfSource& source) {
+  const std::function<void(const Quad&)> take = [](const Quad&) {};
+  Reading reading(source, take);
+  reading.run();
+  return std::move(reading.prefixes);
 }
 
 std::uint64_t loadRdf(const RdfSource& source, QuadWriter& writer) {

@@ -40,7 +40,7 @@ struct OntologyClass {
   std::vector<std::string> parts;             ///< classes of its parts, including those inherited from ancestors
   std::vector<UsualPlace> places;             ///< not inherited; most probable first
 
-  /// The label in a language, else in English, else the local name of the IRI.
+  /// The label in a language, else in English, else the local name of the IRI, else the IRI ("http://e/tree/").
   std::string label(std::string_view language = "en") const;
 };
 
@@ -59,6 +59,9 @@ struct OntologyView {
   bool isA(std::string_view iri, std::string_view ancestor) const;
   std::vector<std::string> classNames() const;  ///< the IRIs, for "did you mean"
 };
+
+/// The IRIs of the classes that a graph declares, by default the ontology graph; sorted.
+std::vector<std::string> classIrisOf(const QuadReader& reader, std::string_view graph = "");
 
 /// Reads the classes from a graph of the store, by default the ontology graph.
 OntologyView ontologyViewOf(const QuadReader& reader, std::string_view graph = "");

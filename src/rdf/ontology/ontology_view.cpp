@@ -159,7 +159,8 @@ std::vector<OntologyProperty> readProperties(const GraphReader& graph) {
 std::string OntologyClass::label(std::string_view language) const {
   for (const std::string_view tag : {language, std::string_view("en"), std::string_view("")})
     if (const auto found = labels.find(std::string(tag)); found != labels.end()) return found->second;
-  return localName(iri);
+  const std::string local = localName(iri);
+  return local.empty() ? iri : local;
 }
 
 const OntologyClass* OntologyView::find(std::string_view iri) const {
@@ -179,6 +180,10 @@ std::vector<std::string> OntologyView::classNames() const {
   std::vector<std::string> names;
   for (const OntologyClass& entry : classes) names.push_back(entry.iri);
   return names;
+}
+
+std::vector<std::string> classIrisOf(const QuadReader& reader, std::string_view graph) {
+  return classIris(GraphReader(reader, graph.empty() ? kGraphOntology : graph));
 }
 
 OntologyView ontologyViewOf(const QuadReader& reader, std::string_view graph_iri) {

@@ -55,6 +55,12 @@ bool haveSameClasses(ClassCatalogue a, ClassCatalogue b) {
   return a.classes == b.classes;
 }
 
+rdf::ClassNames namesOf(const ClassCatalogue& catalogue) {
+  rdf::ClassNames names;
+  for (const ClassEntry& entry : catalogue.classes) names.add(entry.iri);
+  return names;
+}
+
 ClassCatalogue catalogueOf(const rdf::OntologyView& ontology) {
   ClassCatalogue catalogue;
   for (const rdf::OntologyClass& known : ontology.classes)

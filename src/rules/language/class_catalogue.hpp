@@ -6,6 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "rdf/ontology/class_names.hpp"
+
 namespace cluxel::rdf {
 struct OntologyView;
 }
@@ -33,6 +35,9 @@ struct ClassCatalogue {
 
 /// Whether two catalogues have the same classes with the same superclasses and parts, in whatever order.
 bool haveSameClasses(ClassCatalogue a, ClassCatalogue b);
+
+/// What the classes are called in lists.
+rdf::ClassNames namesOf(const ClassCatalogue& catalogue);
 
 /// The classes of an ontology as rules see them.
 ClassCatalogue catalogueOf(const rdf::OntologyView& ontology);

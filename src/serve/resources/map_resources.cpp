@@ -64,7 +64,7 @@ std::string mapSummaryJson(const ServedMap& map) {
   const rdf::QuadReader snapshot = map.quads();
   const auto table = objectsOf(snapshot);
   std::map<std::string, std::size_t> by_class;
-  for (const Object& object : table->objects) ++by_class[mapping::localName(object.class_iri)];
+  for (const Object& object : table->objects) ++by_class[table->class_names.nameOf(object.class_iri)];
   const std::string base = "/maps/" + percentEncoded(map.name());
   Json json{{"name", map.name()},
             {"sparql", base + "/sparql"},

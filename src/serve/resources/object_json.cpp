@@ -35,11 +35,11 @@ void addExtent(ObjectJson& json, const Extent& extent) {
 
 }  // namespace
 
-ObjectJson objectJson(const Object& object, const rdf::QuadReader& quads) {
+ObjectJson objectJson(const Object& object, const rdf::QuadReader& quads, const rdf::ClassNames& names) {
   ObjectJson json{{"id", mapping::localName(object.iri)},
                   {"iri", object.iri},
                   {"number", object.number},
-                  {"class", mapping::localName(object.class_iri)},
+                  {"class", names.nameOf(object.class_iri)},
                   {"classIri", object.class_iri},
                   {"label", object.label},
                   {"confidence", object.confidence},
@@ -49,7 +49,7 @@ ObjectJson objectJson(const Object& object, const rdf::QuadReader& quads) {
   if (const auto gone = tasks::seenThrough(quads, object.iri)) json["seenThrough"] = *gone;
   json["parts"] = ObjectJson::array();
   for (const ObjectPart& part : object.parts) {
-    ObjectJson entry{{"iri", part.iri}, {"class", mapping::localName(part.class_iri)}, {"label", part.label}};
+    ObjectJson entry{{"iri", part.iri}, {"class", names.nameOf(part.class_iri)}, {"label", part.label}};
     addExtent(entry, part);
     json["parts"].push_back(std::move(entry));
   }

@@ -7,6 +7,7 @@
 
 #include "cluxel/object.hpp"
 #include "cluxel/point_cloud.hpp"
+#include "rdf/ontology/class_names.hpp"
 #include "rdf/store/quad_store.hpp"
 
 namespace cluxel::serve {
@@ -14,7 +15,7 @@ namespace cluxel::serve {
 using ObjectJson = nlohmann::ordered_json;
 
 /// With what the map tells of the object beside its measures: whether it is gone.
-ObjectJson objectJson(const Object& object, const rdf::QuadReader& quads);
+ObjectJson objectJson(const Object& object, const rdf::QuadReader& quads, const rdf::ClassNames& names);
 /// One array for each of x, y, z, label, and intensity when all scans have it.
 ObjectJson pointsJson(const PointCloud& points);
 /// A coordinate with three decimals.

@@ -16,7 +16,7 @@
 #include "serve/resources/map_resources.hpp"
 #include "serve/resources/object_json.hpp"
 #include "tasks/explanation.hpp"
-#include "tasks/ways/route.hpp"
+#include "tasks/named_class.hpp"
 
 namespace cluxel::serve {
 
@@ -87,10 +87,11 @@ Box boxOf(const Parameters& parameters) {
   return box;
 }
 
-std::vector<const Object*> selected(const ObjectTable& table, const Parameters& parameters) {
+std::vector<const Object*> selected(const ServedMap& map, const ObjectTable& table, const Parameters& parameters) {
   const Box box = boxOf(parameters);
   const auto class_name = valueOf(parameters, "class");
-  const std::string class_iri = class_name ? tasks::classNamed(table.ontology, *class_name) : std::string();
+  const auto namespaces = [&] { return tasks::namespacesOf(mapping::MapReader(map.file()).inputs()); };
+  const std::string class_iri = class_name ? tasks::classNamed(table.ontology, *class_name, namespaces) : "";
   std::vector<const Object*> objects;
   for (const Object& object : table.objects)
     if (box.meets(object) && (!class_name || table.ontology.isA(object.class_iri, class_iri)))
@@ -130,10 +131,10 @@ HttpResponse answerObjects(const ServedMap& map, const ResourceRequest& asked) {
   const std::size_t limit = std::min(wholeNumberOf(parameters, "limit").value_or(kDefaultPage), kLargestPage);
   const std::size_t offset = wholeNumberOf(parameters, "offset").value_or(0);
   const auto table = objectsOf(map.quads());
-  const std::vector<const Object*> objects = selected(*table, parameters);
+  const std::vector<const Object*> objects = selected(map, *table, parameters);
   ObjectJson json{{"total", objects.size()}, {"offset", offset}, {"objects", ObjectJson::array()}};
   for (std::size_t i = offset; i < objects.size() && i - offset < limit; ++i)
-    json["objects"].push_back(objectJson(*objects[i], map.quads()));
+    json["objects"].push_back(objectJson(*objects[i], map.quads(), table->class_names));
   if (limit > 0 && offset < objects.size() && objects.size() - offset > limit) json["nextOffset"] = offset + limit;
   return jsonResponse(json, asked.limits);
 }
@@ -142,7 +143,7 @@ HttpResponse answerObject(const ServedMap& map, const ResourceRequest& asked, co
   requireKnown(asked.target.parameters, {});
   const auto table = objectsOf(map.quads());
   const Object& object = objectNamed(*table, map.quads(), id);
-  ObjectJson json = objectJson(object, map.quads());
+  ObjectJson json = objectJson(object, map.quads(), table->class_names);
   const auto things = mapping::storedThings(map.quads());
   json["thing"] = thingOf(things, ContentHash::fromHex(hashOf(object.iri))).iri;
   return jsonResponse(json, asked.limits);

@@ -95,7 +95,7 @@ TaskCell objectCell(const mapping::MapReader& map, const ChangedThing& thing) {
 }
 
 TaskCell classCell(const mapping::MapReader& map, const ChangedThing& thing) {
-  return thing.object ? TaskCell(mapping::localName(map.classOf(*thing.object))) : TaskCell();
+  return thing.object ? TaskCell(map.classNames().nameOf(map.classOf(*thing.object))) : TaskCell();
 }
 
 TaskRow changeRow(const mapping::MapReader& map, const SiteChange& change) {
@@ -122,10 +122,10 @@ std::string presenceLine(const ObjectStates& states) {
 
 TaskRow unobservedRow(const mapping::MapReader& map, const ObjectStates& states) {
   const Eigen::Vector2d& at = states.centre;
-  return {
-      {std::string("not observed"), rdf::iriOfObject(map.objectIds()[states.object]),
-       mapping::localName(map.classOf(states.object)), std::string("whole"), at.x(), at.y(), TaskCell(), TaskCell()},
-      {TaskShape::Kind::Point, {at}}};
+  return {{std::string("not observed"), rdf::iriOfObject(map.objectIds()[states.object]),
+           map.classNames().nameOf(map.classOf(states.object)), std::string("whole"), at.x(), at.y(), TaskCell(),
+           TaskCell()},
+          {TaskShape::Kind::Point, {at}}};
 }
 
 TaskAnswer runChanges(const TaskContext& context, const TaskValues& values) {
@@ -263,7 +263,7 @@ TaskAnswer registerAnswer(const mapping::MapReader& map, const InventoryParams& 
     answer.rows.push_back(
         {{std::string(nameOf(row.status)), entry != nullptr ? namedCell(entry->id) : TaskCell(),
           item != nullptr ? namedCell(item->object) : TaskCell(),
-          entry != nullptr ? mapping::localName(entry->class_iri) : item->kind, at.x(), at.y(),
+          entry != nullptr ? map.classNames().nameOf(entry->class_iri) : item->kind, at.x(), at.y(),
           measuredCell(row.distance_m), has_heights ? measuredCell(item->height_m - *entry->height_m) : TaskCell()},
          {TaskShape::Kind::Point, {at}}});
   }
@@ -284,7 +284,7 @@ std::vector<Task> surveyTasks() {
                            Kind::Class, false, true}};
   inventory.columns = inventoryColumns();
   inventory.run = [](const TaskContext& context, const TaskValues& values) {
-    return inventoryAnswer(context.map, inventoryOfKinds(ontologyViewOf(context.map.quads()), values.all("kind")));
+    return inventoryAnswer(context.map, inventoryOfKinds(context.map, values.all("kind")));
   };
   Task view;
   view.name = "next-view";

@@ -137,7 +137,7 @@ ChangeJson boxJson(const Eigen::AlignedBox3d& box) {
 ChangeJson objectJson(const mapping::MapReader& map, std::uint32_t number) {
   return {{"object", rdf::iriOfObject(map.objectIds()[number])},
           {"number", number},
-          {"class", mapping::localName(map.classOf(number))}};
+          {"class", map.classNames().nameOf(map.classOf(number))}};
 }
 
 ChangeJson thingJson(const mapping::MapReader& map, const ChangedThing& thing) {

@@ -12,7 +12,10 @@ namespace cluxel::tasks {
 
 LabelMapCheck::LabelMapCheck(const scan::LabelMap& labels, const rules::ClassCatalogue& catalogue, std::string file)
     : labels_(labels), catalogue_(catalogue), file_(std::move(file)) {
-  for (const rules::ClassEntry& entry : catalogue.classes) iri_of_.emplace(rdf::localName(entry.iri), entry.iri);
+  class_names_ = namesOf(catalogue);
+  for (const rules::ClassEntry& entry : catalogue.classes)
+    if (class_names_.meantBy(rdf::localName(entry.iri)).size() == 1)
+      iri_of_.emplace(rdf::localName(entry.iri), class_names_.meantBy(rdf::localName(entry.iri)).front());
   for (const auto& [name, iri] : iri_of_) names_.push_back(name);
 }
 
@@ -29,7 +32,8 @@ std::vector<std::string> LabelMapCheck::run() {
 /// One label map serves maps with different ontologies: a class that one of them lacks may be right for another.
 void LabelMapCheck::checkCountsAs() {
   for (const auto& [name, target] : labels_.countsAs()) {
-    if (iri_of_.contains(name)) continue;
+    checkNamesakes(name);
+    if (!class_names_.withLocalName(name).empty()) continue;
     const std::string hint = nearestHint(name);
     add("counts_as: the ontology of the map has no class '" + name + "', so no answer is of it" +
         (hint.empty() ? "" : "; ") + hint);
@@ -38,6 +42,7 @@ void LabelMapCheck::checkCountsAs() {
 
 /// A truth may have classes of its own (StaticOrPlant); answers reach them by counts_as alone.
 void LabelMapCheck::checkObject(const std::string& name) {
+  checkNamesakes(name);
   const auto known = iri_of_.find(name);
   if (known != iri_of_.end()) {
     if (!catalogue_.isA(known->second, rdf::vocabulary::clx("Object")))
@@ -48,9 +53,23 @@ void LabelMapCheck::checkObject(const std::string& name) {
   const bool is_reached =
       std::any_of(counts_as.begin(), counts_as.end(), [&](const auto& entry) { return entry.second == name; });
   const std::string hint = nearestHint(name);
-  if (!is_reached)
+  if (!is_reached && class_names_.withLocalName(name).empty())
     add("the ontology of the map has no class '" + name + "', so no answer is of it" + (hint.empty() ? "" : "; ") +
         hint);
+}
+
+/// Label maps have local names alone, which mean one class.
+void LabelMapCheck::checkNamesakes(const std::string& name) {
+  const std::vector<std::string> namesakes = class_names_.withLocalName(name), meant = class_names_.meantBy(name);
+  if (namesakes.size() < 2) return;
+  std::string others;
+  for (const std::string& iri : namesakes)
+    if (meant.size() > 1 || iri != meant.front()) others += (others.empty() ? "<" : ", <") + iri + ">";
+  if (meant.size() > 1)
+    add("'" + name + "' is the local name of several classes in the ontology of the map: " + others +
+        "; no answer is of it, and each counts as its superclass");
+  else
+    add("'" + name + "' means <" + meant.front() + "> alone; answers of " + others + " count as their superclass");
 }
 
 void LabelMapCheck::checkPart(const std::string& part, const std::string& object) {

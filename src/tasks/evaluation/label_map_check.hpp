@@ -21,6 +21,7 @@ class LabelMapCheck {
  private:
   void checkCountsAs();
   void checkObject(const std::string& name);
+  void checkNamesakes(const std::string& name);
   void checkPart(const std::string& part, const std::string& object);
   void add(const std::string& doubt);
   std::string nearestHint(const std::string& name) const;
@@ -28,7 +29,8 @@ class LabelMapCheck {
   const scan::LabelMap& labels_;
   const rules::ClassCatalogue& catalogue_;
   std::string file_;
-  std::map<std::string, std::string> iri_of_;  ///< by local name
+  std::map<std::string, std::string> iri_of_;  ///< by local name; without those of several
+  rdf::ClassNames class_names_;
   std::vector<std::string> names_, doubts_;
 };
 

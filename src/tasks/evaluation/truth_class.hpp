@@ -12,7 +12,7 @@
 
 namespace cluxel::tasks {
 
-/// The classes of a truth, by local names, and what answers of other classes count as.
+/// The classes of a truth, by local names as rdf::ClassNames gives them, and what answers of other classes count as.
 struct TruthClasses {
   std::vector<std::string> names;
   std::map<std::string, std::string> counts_as = {};  ///< to one of `names`; goes before the class's own name

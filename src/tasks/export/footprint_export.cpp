@@ -54,7 +54,7 @@ Json polygonJson(const std::vector<Eigen::Vector2d>& hull, const PlaceWriter& po
 Json propertiesOf(const rules::SemanticObject& object, std::size_t number, const mapping::MapReader& map,
                   const rdf::OntologyView& ontology) {
   const rdf::OntologyClass* known = ontology.find(object.class_iri);
-  const std::string class_name = mapping::localName(object.class_iri);
+  const std::string class_name = map.classNames().nameOf(object.class_iri);
   const perception::UprightBox box = mapping::geometryOf(map.scene().cluxels, mapping::cluxelsOf(object)).box;
   const std::string iri = rdf::iriOfObject(object.id);
   Json json{{"label", known == nullptr ? class_name : known->label()},

@@ -16,7 +16,7 @@
 #include "rdf/vocabulary.hpp"
 #include "sparql/query_engine.hpp"
 #include "tasks/gone_things.hpp"
-#include "tasks/ways/route.hpp"
+#include "tasks/named_class.hpp"
 
 namespace cluxel::tasks {
 
@@ -172,13 +172,13 @@ std::vector<InventoryItem> sidewalksOf(const mapping::MapReader& map) {
 
 }  // namespace
 
-InventoryParams inventoryOfKinds(const rdf::OntologyView& ontology, const std::vector<std::string>& kinds) {
+InventoryParams inventoryOfKinds(const mapping::MapReader& map, const std::vector<std::string>& kinds) {
   InventoryParams params;
   if (kinds.empty()) return params;
   params.classes.clear();
   params.with_rows = params.with_sidewalks = false;
   for (const std::string& kind : kinds) {
-    const std::string iri = classNamed(ontology, kind);
+    const std::string iri = classNamed(map, kind);
     if (iri == rdf::vocabulary::clx("ParkingRow"))
       params.with_rows = true;
     else if (iri == rdf::vocabulary::clx("Sidewalk"))
@@ -192,7 +192,7 @@ InventoryParams inventoryOfKinds(const rdf::OntologyView& ontology, const std::v
 InventoryItem measuredItem(const mapping::MapReader& map, const rules::SemanticObject& object) {
   const perception::SceneCluxels& cluxels = map.scene().cluxels;
   InventoryItem item;
-  item.kind = mapping::localName(object.class_iri);
+  item.kind = map.classNames().nameOf(object.class_iri);
   item.class_iri = object.class_iri;
   item.object = rdf::iriOfObject(object.id);
   item.height_m = mapping::geometryOf(cluxels, mapping::cluxelsOf(object)).top_m;
@@ -205,7 +205,7 @@ Inventory inventoryOf(const mapping::MapReader& map, const InventoryParams& para
                       const std::vector<Street>& streets) {
   const rdf::OntologyView ontology = ontologyViewOf(map.quads());
   std::vector<std::string> wanted;
-  for (const std::string& name : params.classes) wanted.push_back(classNamed(ontology, name));
+  for (const std::string& name : params.classes) wanted.push_back(classNamed(map, ontology, name));
   const std::vector<bool> is_gone = goneAmong(map);
   std::vector<InventoryItem> items;
   for (std::size_t i = 0; i < is_gone.size(); ++i) {

@@ -44,7 +44,7 @@ struct InventoryParams {
 
 /// What is of the named classes, written as classNamed() takes them. clx:ParkingRow and clx:Sidewalk are the rows and
 /// the sidewalks. The defaults without names. Throws Error (NotFound) for an unknown class.
-InventoryParams inventoryOfKinds(const rdf::OntologyView& ontology, const std::vector<std::string>& kinds);
+InventoryParams inventoryOfKinds(const mapping::MapReader& map, const std::vector<std::string>& kinds);
 
 /// One object, without its street.
 InventoryItem measuredItem(const mapping::MapReader& map, const rules::SemanticObject& object);

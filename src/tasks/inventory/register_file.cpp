@@ -12,7 +12,7 @@
 #include "tasks/export/proj_geo_reference.hpp"
 #include "tasks/finite_number.hpp"
 #include "tasks/inventory/register.hpp"
-#include "tasks/ways/route.hpp"
+#include "tasks/named_class.hpp"
 
 namespace cluxel::tasks {
 
@@ -75,12 +75,13 @@ struct CsvHeader {
 /// Takes what was written for the class and the height of an entry, and collects faults.
 class EntryReader {
  public:
-  explicit EntryReader(const rdf::OntologyView& ontology) : ontology_(ontology) {}
+  EntryReader(const rdf::OntologyView& ontology, const mapping::MapInputs& inputs)
+      : ontology_(ontology), inputs_(inputs) {}
 
   /// `place`: where faults are, with what stands in front of their messages.
   void read(RegisterEntry& entry, const std::string& kind, std::string_view height, const Diagnostic& place) {
     try {
-      entry.class_iri = classNamed(ontology_, kind);
+      entry.class_iri = classNamed(ontology_, kind, [&] { return namespacesOf(inputs_); });
     } catch (const Error& error) {
       addFault(place, error.what(), "");
     }
@@ -102,6 +103,7 @@ class EntryReader {
 
  private:
   const rdf::OntologyView& ontology_;
+  const mapping::MapInputs& inputs_;
   std::vector<Diagnostic> faults_;
 };
 
@@ -216,8 +218,9 @@ std::vector<RegisterEntry> readGeoJsonRegister(const std::filesystem::path& file
 std::vector<RegisterEntry> readRegister(const std::filesystem::path& file, const mapping::MapInputs& inputs,
                                         const rdf::OntologyView& ontology) {
   const std::string ending = file.extension();
-  if (ending == ".csv") return readCsvRegister(file, inputs, EntryReader(ontology));
-  if (ending == ".geojson" || ending == ".json") return readGeoJsonRegister(file, inputs, EntryReader(ontology));
+  if (ending == ".csv") return readCsvRegister(file, inputs, EntryReader(ontology, inputs));
+  if (ending == ".geojson" || ending == ".json")
+    return readGeoJsonRegister(file, inputs, EntryReader(ontology, inputs));
   throw InputError({.file = file.string()}, "a register is a file NAME.csv or NAME.geojson");
 }
 

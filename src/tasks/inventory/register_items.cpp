@@ -55,7 +55,7 @@ std::vector<InventoryItem> thingsTyped(const mapping::MapReader& map, const std:
     if (table.at(row, 1) == nullptr || table.at(row, 2) == nullptr) continue;
     const auto number = [&](std::size_t column) { return std::stod(table.at(row, column)->text); };
     InventoryItem& item = found.emplace_back();
-    item.kind = mapping::localName(class_iri);
+    item.kind = map.classNames().nameOf(class_iri);
     item.class_iri = class_iri;
     item.object = table.at(row, 0)->text;
     item.at = {number(1), number(2)};

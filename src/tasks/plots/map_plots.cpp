@@ -40,7 +40,7 @@ std::vector<PlotSpread> heightsByClass(const mapping::MapReader& map) {
   std::map<std::string, std::vector<double>> by_class;
   for (const rules::SemanticObject& object : map.objects()) {
     const auto height = height_of.find(rdf::iriOfObject(object.id));
-    if (height != height_of.end()) by_class[mapping::localName(object.class_iri)].push_back(height->second);
+    if (height != height_of.end()) by_class[map.classNames().nameOf(object.class_iri)].push_back(height->second);
   }
   std::vector<PlotSpread> spreads;
   for (auto& [name, values] : by_class) spreads.push_back(spreadOf(name, std::move(values)));

@@ -42,7 +42,11 @@ class ExampleCollector {
  public:
   ExampleCollector(const mapping::MapReader& map, const TruthSource& truth, const rules::RuleSet& rules,
                    bool attributes)
-      : rules_(rules), classes_(truth.classes()), truth_(truthOfCluxels(map, truth)), attributes_(attributes) {}
+      : rules_(rules),
+        class_names_(namesOf(rules.catalogue)),
+        classes_(truth.classes()),
+        truth_(truthOfCluxels(map, truth)),
+        attributes_(attributes) {}
 
   void see(const rules::ReasoningState& state, const rules::Rule& rule, const rules::Verdict& verdict) {
     const auto cluxels = cluxelsOf(state, *verdict.accept, verdict.bindings);
@@ -98,7 +102,7 @@ class ExampleCollector {
   Match matchOf(const std::string& class_iri, const std::string& truth_class) const {
     const auto truth_entry =
         std::find_if(rules_.catalogue.classes.begin(), rules_.catalogue.classes.end(),
-                     [&](const rules::ClassEntry& entry) { return mapping::localName(entry.iri) == truth_class; });
+                     [&](const rules::ClassEntry& entry) { return class_names_.nameOf(entry.iri) == truth_class; });
     if (truth_entry != rules_.catalogue.classes.end() && rules_.catalogue.isA(truth_entry->iri, class_iri))
       return Match::Named;
     const std::size_t counted = countedAs(class_iri);
@@ -109,7 +113,7 @@ class ExampleCollector {
   /// Whether the truth tells this class, or one below it, from others.
   bool hasWordFor(const std::string& class_iri) const {
     return std::any_of(rules_.catalogue.classes.begin(), rules_.catalogue.classes.end(), [&](const auto& entry) {
-      return rules_.catalogue.isA(entry.iri, class_iri) && classes_.meant.contains(mapping::localName(entry.iri));
+      return rules_.catalogue.isA(entry.iri, class_iri) && classes_.meant.contains(class_names_.nameOf(entry.iri));
     });
   }
 
@@ -152,6 +156,7 @@ class ExampleCollector {
   }
 
   const rules::RuleSet& rules_;
+  rdf::ClassNames class_names_;
   TruthClasses classes_;
   CluxelTruth truth_;
   bool attributes_;

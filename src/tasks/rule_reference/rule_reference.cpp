@@ -147,8 +147,7 @@ void MeasuredClasses::add(const mapping::MapReader& map) {
       const auto& own = scene.primitives[member].cluxels;
       if (std::includes(cluxels.begin(), cluxels.end(), own.begin(), own.end())) whole.push_back(member);
     }
-    values_[mapping::localName(object.class_iri)].push_back(
-        rules::shapeOfCluxels(scene, cluxels, all, whole).attributes);
+    values_[object.class_iri].push_back(rules::shapeOfCluxels(scene, cluxels, all, whole).attributes);
   }
 }
 
@@ -160,7 +159,7 @@ std::string referenceOf(const rules::RuleSet& rules, const MeasuredClasses& meas
             (measured.maps() == 1 ? " map" : " maps") + ", as these maps name them.\n";
   for (const std::string& iri : rules.order) {
     text += "\n### " + rules.shorten(iri) + "\n";
-    const auto objects = measured.values().find(mapping::localName(iri));
+    const auto objects = measured.values().find(iri);
     if (objects != measured.values().end())
       text += "\n" + std::to_string(objects->second.size()) +
               (objects->second.size() == 1 ? " object\n" : " objects\n") + tableOf(objects->second);

@@ -15,6 +15,7 @@
 #include "rules/decide/reason.hpp"
 #include "rules/language/rule_loader.hpp"
 #include "tasks/explanation.hpp"
+#include "tasks/named_class.hpp"
 #include "tasks/rule_teaching/lesson_text.hpp"
 #include "tasks/thing_names.hpp"
 
@@ -29,7 +30,7 @@ class Teaching {
   Teaching(const mapping::MapReader& map, const LessonRequest& request) : map_(map), request_(request) {
     rules_ = rulesForMap(map, "rules.yaml", includingText(map, ""));
     lesson_.object = objectNamed(map, request.object);
-    lesson_.class_iri = classNamed(rules_, request.class_name);
+    lesson_.class_iri = classNamed(map, request.class_name);
     mapping::Statement is_class;
     is_class.value = Term::iri(lesson_.class_iri);
     mapping::requireStatable(is_class, rules_.catalogue);

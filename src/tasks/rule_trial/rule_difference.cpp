@@ -24,8 +24,8 @@ Objects objectsBy(const mapping::MapReader& map, const rules::RuleSet& rules) {
   return reason(map.scene(), rules, {.oracle = &oracle}).objects;
 }
 
-JudgedObject judged(const rules::SemanticObject& object) {
-  return {object.id, mapping::localName(object.class_iri), object.rule_id, object.confidence};
+JudgedObject judged(const rules::SemanticObject& object, const rdf::ClassNames& names) {
+  return {object.id, names.nameOf(object.class_iri), object.rule_id, object.confidence};
 }
 
 template <typename See>
@@ -36,8 +36,8 @@ void forEachCluxel(const rules::SemanticObject& object, const See& see) {
 
 class ObjectComparison {
  public:
-  ObjectComparison(const perception::Scene& scene, const Objects& before, const Objects& after)
-      : cluxels_(scene.cluxels), before_(before), after_(after) {
+  ObjectComparison(const mapping::MapReader& map, const Objects& before, const Objects& after)
+      : cluxels_(map.scene().cluxels), class_names_(map.classNames()), before_(before), after_(after) {
     result_.before = before.size();
     result_.after = after.size();
     result_.kind_of_cluxel.resize(cluxels_.size());
@@ -108,8 +108,8 @@ class ObjectComparison {
   void add(ObjectChangeKind kind, const rules::SemanticObject* before, const rules::SemanticObject* after) {
     ObjectChange change;
     change.kind = kind;
-    if (before != nullptr) change.before = judged(*before);
-    if (after != nullptr) change.after = judged(*after);
+    if (before != nullptr) change.before = judged(*before, class_names_);
+    if (after != nullptr) change.after = judged(*after, class_names_);
     for (const auto* object : {before, after})
       if (object != nullptr)
         forEachCluxel(*object, [&](std::uint32_t cluxel) { result_.kind_of_cluxel[cluxel] = kind; });
@@ -131,6 +131,7 @@ class ObjectComparison {
   }
 
   const perception::SceneCluxels& cluxels_;
+  const rdf::ClassNames& class_names_;
   const Objects &before_, &after_;
   std::vector<std::uint32_t> after_of_, before_of_;  ///< the partner, or kNoOwner
   RuleDifference result_;
@@ -140,11 +141,11 @@ class ObjectComparison {
 
 RuleDifference differenceOf(const mapping::MapReader& map, const rules::RuleSet& before, const rules::RuleSet& after) {
   const Objects first = objectsBy(map, before), second = objectsBy(map, after);
-  return ObjectComparison(map.scene(), first, second).compare();
+  return ObjectComparison(map, first, second).compare();
 }
 
 RuleDifference trialOf(const mapping::MapReader& map, const rules::RuleSet& rules) {
-  return ObjectComparison(map.scene(), map.objectsByRules(), objectsBy(map, rules)).compare();
+  return ObjectComparison(map, map.objectsByRules(), objectsBy(map, rules)).compare();
 }
 
 rules::RuleSet rulesForMap(const mapping::MapReader& map, const std::string& name, const std::string& text) {

@@ -31,7 +31,7 @@ std::string_view nameOf(ObjectChangeKind kind);
 /// An object under one of the two sets of rules.
 struct JudgedObject {
   ContentHash id;
-  std::string class_name;  ///< local name
+  std::string class_name;  ///< as MapReader::classNames() has it
   std::string rule_id;
   double confidence = 0;
 };

@@ -16,6 +16,7 @@
 #include "sparql/query_engine.hpp"
 #include "tasks/finite_number.hpp"
 #include "tasks/gone_things.hpp"
+#include "tasks/named_class.hpp"
 #include "tasks/query_source.hpp"
 #include "tasks/search/search_tour.hpp"
 
@@ -132,7 +133,7 @@ std::vector<rdf::UsualPlace> usualPlacesOf(const rdf::OntologyView& ontology, co
 
 SearchAnswer searchFor(const mapping::MapReader& map, const SearchRequest& request) {
   const rdf::OntologyView ontology = ontologyViewOf(map.quads());
-  const std::string class_iri = classNamed(ontology, request.class_name);
+  const std::string class_iri = classNamed(map, ontology, request.class_name);
   const Eigen::Vector2d from = request.from.empty() ? lastStop(map) : placeNamed(map, request.from);
   const TerrainGrid terrain = terrainOf(map, request.ways.terrain);
   const PassableGrid grid = passableIn(map, terrain, request.ways);

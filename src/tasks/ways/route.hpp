@@ -12,7 +12,7 @@
 
 namespace cluxel::tasks {
 
-/// What a way must be like. Names are local names or IRIs of classes; `without` also takes "Movable" and "Static".
+/// What a way must be like. Classes are written as for classNamed(); `without` also takes "Movable" and "Static".
 struct WayRequest {
   WayParams params = {};
   TerrainParams terrain = {};
@@ -35,9 +35,6 @@ Eigen::Vector2d placeNamed(const mapping::MapReader& map, const std::string& tex
 
 /// The open cell nearest to a place. Throws Error (NotFound) when there is none within 2 m.
 std::uint32_t openCellNear(const PassableGrid& grid, const Eigen::Vector2d& p_map);
-/// The IRI of a class written "StreetSign", "clx:StreetSign", in full, or by its label in some language ("street
-/// sign", whatever the case). Throws Error (NotFound) for an unknown class, and for a label of several.
-std::string classNamed(const rdf::OntologyView& ontology, const std::string& written);
 
 struct Route {
   std::vector<std::uint32_t> cells;

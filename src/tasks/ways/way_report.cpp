@@ -77,7 +77,7 @@ std::vector<Eigen::Vector2d> cornersOf(const GridFrame& frame, const std::vector
 std::string thingName(const mapping::MapReader& map, std::uint32_t thing) {
   if (thing == kUnnamedThing) return "something unnamed";
   constexpr std::size_t digits = 12;
-  return mapping::localName(map.classOf(thing)) + " object/" + map.objectIds()[thing].hex().substr(0, digits);
+  return map.classNames().nameOf(map.classOf(thing)) + " object/" + map.objectIds()[thing].hex().substr(0, digits);
 }
 
 std::string barrierText(const mapping::MapReader& map, const Barrier& barrier) {
@@ -143,7 +143,7 @@ std::string reachJson(const mapping::MapReader& map, const std::vector<ReachedOb
   for (const ReachedObject& entry : reached) {
     const rules::SemanticObject& object = map.objects()[entry.object];
     json["objects"].push_back({{"object", rdf::iriOfObject(object.id)},
-                               {"class", mapping::localName(object.class_iri)},
+                               {"class", map.classNames().nameOf(object.class_iri)},
                                {"walk", rounded3(entry.walk_m)},
                                {"seconds", rounded3(entry.walk_m / speed_m_s)}});
   }

@@ -3,14 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/ascii.hpp"
-#include "base/nearest_name.hpp"
 #include "cluxel/error.hpp"
 #include "rdf/map_iris.hpp"
 #include "rdf/ontology/ontology.hpp"
 #include "rdf/vocabulary.hpp"
 #include "tasks/finite_number.hpp"
 #include "tasks/gone_things.hpp"
+#include "tasks/named_class.hpp"
 #include "tasks/ways/class_cells.hpp"
 #include "tasks/ways/route.hpp"
 
@@ -25,7 +24,7 @@ class ObjectSelector {
 
   void mark(const std::string& name, std::vector<bool>& marked) const {
     const bool is_mobility = isMobility(name);
-    const std::string iri = is_mobility ? std::string() : classNamed(ontology_, name);
+    const std::string iri = is_mobility ? std::string() : classNamed(map_, ontology_, name);
     const rdf::Mobility mobility = name == "Movable" ? rdf::Mobility::Movable : rdf::Mobility::Static;
     for (std::size_t i = 0; i < map_.objects().size(); ++i) {
       const std::string& class_iri = map_.objects()[i].class_iri;
@@ -47,7 +46,7 @@ class ObjectSelector {
         for (const std::uint32_t thing : terrain.thingsIn(cell))
           if (thing != kUnnamedThing && marked[thing] && !is_left_out[thing]) cells[cell] = 1;
     } else {
-      const std::string iri = classNamed(ontology_, name);
+      const std::string iri = classNamed(map_, ontology_, name);
       const bool is_surface = ontology_.isA(iri, rdf::vocabulary::clx("Surface"));  // one walks on it
       cells = is_surface ? terrain.seen : cellsWith(map_, terrain, ontology_, iri, is_left_out);
     }
@@ -78,42 +77,7 @@ Eigen::Vector2d centroidOf(const mapping::MapReader& map, const std::string& iri
   return place;
 }
 
-/// Without case, blanks and what joins words.
-std::string plainWords(std::string_view text) {
-  std::string plain = lowerCase(text);
-  plain.erase(std::remove_if(plain.begin(), plain.end(), [](char c) { return c == ' ' || c == '-' || c == '_'; }),
-              plain.end());
-  return plain;
-}
-
-/// The only class with the label, in any language; none when there are several.
-std::optional<std::string> classLabelled(const rdf::OntologyView& ontology, std::string_view text) {
-  std::optional<std::string> found;
-  for (const rdf::OntologyClass& known : ontology.classes) {
-    const bool is_meant = plainWords(mapping::localName(known.iri)) == plainWords(text) ||
-                          std::any_of(known.labels.begin(), known.labels.end(),
-                                      [&](const auto& label) { return plainWords(label.second) == plainWords(text); });
-    if (is_meant && found) return std::nullopt;
-    if (is_meant) found = known.iri;
-  }
-  return found;
-}
-
 }  // namespace
-
-std::string classNamed(const rdf::OntologyView& ontology, const std::string& written) {
-  std::string_view name = trimmed(written);
-  if (name.starts_with('<') && name.ends_with('>')) name = name.substr(1, name.size() - 2);
-  const std::string local(name.starts_with("clx:") ? name.substr(4) : name);
-  for (const std::string& iri : {std::string(name), rdf::vocabulary::clx(local)})
-    if (ontology.find(iri) != nullptr) return iri;
-  if (const auto labelled = classLabelled(ontology, name)) return *labelled;
-  std::vector<std::string> known;
-  for (const std::string& iri : ontology.classNames()) known.push_back(mapping::localName(iri));
-  const std::string hint = suggestion(local, known);
-  throw Error(ErrorKind::NotFound,
-              "the map's ontology has no class '" + std::string(name) + "'" + (hint.empty() ? "" : "; " + hint));
-}
 
 std::vector<bool> leftOut(const mapping::MapReader& map, const WayRequest& request) {
   std::vector<bool> is_left_out(map.objects().size(), false);

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+// A name is looked up as an IRI, with its prefix, as a local name and as a label, in this order.
+#include "tasks/named_class.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include "base/ascii.hpp"
+#include "base/nearest_name.hpp"
+#include "cluxel/error.hpp"
+#include "mapping/facts/semantic_layer.hpp"
+#include "rdf/iri.hpp"
+#include "rdf/ontology/class_names.hpp"
+#include "rdf/vocabulary.hpp"
+#include "rules/language/rule_set.hpp"
+
+namespace cluxel::tasks {
+
+namespace {
+
+/// Without case, blanks and what joins words.
+std::string plainWords(std::string_view text) {
+  std::string plain = lowerCase(text);
+  plain.erase(std::remove_if(plain.begin(), plain.end(), [](char c) { return c == ' ' || c == '-' || c == '_'; }),
+              plain.end());
+  return plain;
+}
+
+class ClassLookup {
+ public:
+  ClassLookup(const rdf::OntologyView& ontology, const std::function<Namespaces()>& namespaces)
+      : ontology_(ontology), namespaces_(namespaces), names_(ontology.classNames()) {}
+
+  std::vector<std::string> find(const std::string& name) const {
+    if (ontology_.find(name) != nullptr) return {name};
+    if (auto found = prefixed(name); !found.empty()) return found;
+    if (auto found = names_.meantBy(name); !found.empty() && !name.empty()) return found;
+    return labelled(name);
+  }
+
+  std::string hintFor(const std::string& name) const {
+    const std::string local = name.starts_with("clx:") ? name.substr(4) : name;
+    return suggestion(local, names_.all());
+  }
+
+ private:
+  std::vector<std::string> prefixed(const std::string& name) const {
+    const std::size_t colon = name.find(':');
+    if (colon == std::string::npos || name.substr(colon).starts_with("://")) return {};
+    const std::string prefix = name.substr(0, colon), local = name.substr(colon + 1);
+    Namespaces spaces;
+    if (prefix == "clx")
+      spaces.emplace(prefix, rdf::vocabulary::kClx);
+    else if (namespaces_)
+      spaces = namespaces_();
+    std::vector<std::string> found;
+    const auto [begin, end] = spaces.equal_range(prefix);
+    for (auto space = begin; space != end; ++space)
+      if (const std::string iri = space->second + local; ontology_.find(iri) != nullptr) found.push_back(iri);
+    std::sort(found.begin(), found.end());
+    found.erase(std::unique(found.begin(), found.end()), found.end());
+    return found;
+  }
+
+  /// By a label in any language, or by the local name whatever its case.
+  std::vector<std::string> labelled(const std::string& name) const {
+    const std::string words = plainWords(name);
+    std::vector<std::string> found;
+    for (const rdf::OntologyClass& known : ontology_.classes) {
+      const bool is_meant = plainWords(rdf::localName(known.iri)) == words ||
+                            std::any_of(known.labels.begin(), known.labels.end(),
+                                        [&](const auto& label) { return plainWords(label.second) == words; });
+      if (is_meant && !words.empty()) found.push_back(known.iri);
+    }
+    return found;
+  }
+
+  const rdf::OntologyView& ontology_;
+  const std::function<Namespaces()>& namespaces_;
+  rdf::ClassNames names_;
+};
+
+[[noreturn]] void failForSeveral(const std::string& name, const std::vector<std::string>& iris) {
+  std::string list;
+  for (const std::string& iri : iris) list += (list.empty() ? "<" : ", <") + iri + ">";
+  throw Error(ErrorKind::NotFound, "'" + name + "' names " + std::to_string(iris.size()) +
+                                       " classes of the map's ontology: " + list + "; write the IRI of one of them");
+}
+
+}  // namespace
+
+std::string classNamed(const rdf::OntologyView& ontology, const std::string& written,
+                       const std::function<Namespaces()>& namespaces) {
+  std::string name(trimmed(written));
+  if (name.starts_with('<') && name.ends_with('>')) name = name.substr(1, name.size() - 2);
+  const ClassLookup lookup(ontology, namespaces);
+  const std::vector<std::string> found = lookup.find(name);
+  if (found.size() == 1) return found.front();
+  if (!found.empty()) failForSeveral(name, found);
+  const std::string hint = lookup.hintFor(name);
+  throw Error(ErrorKind::NotFound,
+              "the map's ontology has no class '" + name + "'" + (hint.empty() ? "" : "; " + hint));
+}
+
+std::string classNamed(const mapping::MapReader& map, const rdf::OntologyView& ontology, const std::string& written) {
+  return classNamed(ontology, written, [&] { return namespacesOf(map.inputs()); });
+}
+
+std::string classNamed(const mapping::MapReader& map, const std::string& written) {
+  return classNamed(map, ontologyViewOf(map.quads()), written);
+}
+
+Namespaces namespacesOf(const mapping::MapInputs& inputs) {
+  Namespaces spaces;
+  for (const auto& [prefix, space] : mapping::parseInputs(inputs).rules.prefixes) spaces.emplace(prefix, space);
+  for (const rdf::RdfSource& source : mapping::ontologySources(inputs.ontology))
+    for (const auto& [prefix, space] : rdf::prefixesIn(source)) spaces.emplace(prefix, space);
+  return spaces;
+}
+
+}  // namespace cluxel::tasks

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which class a written name means: one answer for all commands.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <string>
+
+#include "mapping/map_reader.hpp"
+#include "rdf/ontology/ontology.hpp"
+
+namespace cluxel::tasks {
+
+/// The namespaces of prefixes. Files may give one prefix different namespaces.
+using Namespaces = std::multimap<std::string, std::string, std::less<>>;
+
+/// The IRI of a class. An IRI, also between < and >, and a name with a prefix ("clx:StreetSign") mean that class alone.
+/// A local name ("StreetSign") means the class of the clx namespace, else the only class that has it. Other words are
+/// the label of one class in some language ("street sign", whatever the case). `namespaces` is asked when there is a
+/// prefix other than clx. Throws Error (NotFound) for an unknown class, and for a name of several; lists those.
+std::string classNamed(const rdf::OntologyView& ontology, const std::string& written,
+                       const std::function<Namespaces()>& namespaces = {});
+/// The same with the prefixes of the map's ontology and rules. `ontology`: that of the map.
+std::string classNamed(const mapping::MapReader& map, const rdf::OntologyView& ontology, const std::string& written);
+std::string classNamed(const mapping::MapReader& map, const std::string& written);
+
+/// The prefixes that the map's ontology and rules declare. Cost: that of parsing both.
+Namespaces namespacesOf(const mapping::MapInputs& inputs);
+
+}  // namespace cluxel::tasks

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which class a name means, when several may be meant.
+#include "tasks/named_class.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "cluxel/error.hpp"
+#include "rdf/vocabulary.hpp"
+
+namespace cluxel::tasks {
+namespace {
+
+using rdf::vocabulary::clx;
+using testing::AllOf;
+using testing::HasSubstr;
+
+const std::string kTown = "http://t.example/town#", kStore = "http://t.example/store/";
+
+rdf::OntologyView viewOf(const std::vector<std::pair<std::string, std::map<std::string, std::string>>>& classes) {
+  rdf::OntologyView view;
+  for (const auto& [iri, labels] : classes) {
+    rdf::OntologyClass& known = view.classes.emplace_back();
+    known.iri = iri, known.labels = labels;
+  }
+  std::sort(view.classes.begin(), view.classes.end(), [](const auto& a, const auto& b) { return a.iri < b.iri; });
+  return view;
+}
+
+/// A town and a store have classes whose local names occur elsewhere.
+rdf::OntologyView twoVocabularies() {
+  return viewOf({{clx("Tree"), {{"en", "tree"}, {"de", "Baum"}}},
+                 {clx("StreetSign"), {{"en", "street sign"}, {"de", "Straßenschild"}}},
+                 {clx("Bench"), {{"en", "bench"}, {"de", "Bank"}}},
+                 {kTown + "Tree", {{"en", "town tree"}, {"de", "Baum"}}},
+                 {kTown + "Kiosk", {}},
+                 {kTown + "Branch", {{"de", "Bank"}}},
+                 {kTown + "Car", {}},
+                 {kStore + "Car", {}},
+                 {kStore, {}}});
+}
+
+Namespaces prefixes() {
+  return {{"town", kTown}, {"store", kStore}, {"both", kTown}, {"both", kStore}};
+}
+
+std::string named(const std::string& written) {
+  return classNamed(twoVocabularies(), written, prefixes);
+}
+
+std::string faultOf(const std::string& written) {
+  try {
+    return "it is " + named(written);
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::NotFound);
+    return error.what();
+  }
+}
+
+TEST(NamedClass, IsALocalNameAnIriOrALabel) {
+  const std::string sign = clx("StreetSign");
+  for (const std::string& written :
+       {std::string("StreetSign"), std::string("clx:StreetSign"), "<" + sign + ">", sign, std::string("Street sign"),
+        std::string("street-sign "), std::string("Straßenschild")})
+    EXPECT_EQ(named(written), sign) << written;
+  EXPECT_THAT(faultOf("Schild"), HasSubstr("no class 'Schild'"));
+  EXPECT_THAT(faultOf(""), HasSubstr("no class ''"));
+  EXPECT_THAT(faultOf("Treee"), HasSubstr("did you mean 'Tree'"));
+}
+
+TEST(NamedClass, OfTheVocabularyHasTheFirstRightToALocalName) {
+  EXPECT_EQ(named("Tree"), clx("Tree"));
+  EXPECT_EQ(named(kTown + "Tree"), kTown + "Tree");
+  EXPECT_EQ(named("town tree"), kTown + "Tree");
+  EXPECT_EQ(named("Kiosk"), kTown + "Kiosk") << "the only class that is called so";
+}
+
+TEST(NamedClass, IsRefusedWithItsIrisWhenSeveralAreMeant) {
+  EXPECT_THAT(faultOf("Car"), AllOf(HasSubstr("'Car' names 2 classes"), HasSubstr("<" + kTown + "Car>"),
+                                    HasSubstr("<" + kStore + "Car>")));
+  EXPECT_THAT(faultOf("Bank"), AllOf(HasSubstr("'Bank' names 2 classes"), HasSubstr("<" + clx("Bench") + ">"),
+                                     HasSubstr("<" + kTown + "Branch>")));
+  EXPECT_THAT(faultOf("both:Car"), HasSubstr("names 2 classes"));
+}
+
+TEST(NamedClass, TakesThePrefixesOfTheMap) {
+  EXPECT_EQ(named("town:Tree"), kTown + "Tree");
+  EXPECT_EQ(named("both:Kiosk"), kTown + "Kiosk");
+  EXPECT_EQ(named("clx:Tree"), clx("Tree"));
+  EXPECT_THAT(faultOf("clx:Kiosk"), HasSubstr("no class 'clx:Kiosk'"));
+  EXPECT_THAT(faultOf("village:Tree"), HasSubstr("no class 'village:Tree'"));
+  EXPECT_THROW(classNamed(twoVocabularies(), "town:Tree"), Error) << "without prefixes";
+}
+
+}  // namespace
+}  // namespace cluxel::tasks
