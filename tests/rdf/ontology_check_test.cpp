@@ -65,16 +65,16 @@ std::string chainOf(int classes) {
 TEST(OntologyCheck, RefusesALongChainOfSuperclassesAndTellsItsLength) {
   EXPECT_EQ(foundFaults(chainOf(490)), "");
   EXPECT_THAT(foundFaults(chainOf(5000)), AllOf(HasSubstr("more.ttl:5002:"), HasSubstr("C4999: it has a chain of 500"),
-                                             HasSubstr("superclasses above each other"), HasSubstr("write at most 500"),
-                                             Not(HasSubstr("cycle"))));
+                                                HasSubstr("superclasses above each other"),
+                                                HasSubstr("write at most 500"), Not(HasSubstr("cycle"))));
 }
 
 TEST(OntologyCheck, StillFindsACycleBelowALongChain) {
-  EXPECT_THAT(
-      foundFaults(chainOf(3) + "my:X a owl:Class ; rdfs:subClassOf my:C2 , my:Y .\n"
-                            "my:Y a owl:Class ; rdfs:subClassOf my:X .\nmy:Z a owl:Class ; rdfs:subClassOf my:X .\n"),
-      AllOf(HasSubstr("X is below Y and above it"), HasSubstr("Y is below X and above it"),
-            Not(HasSubstr("Z: the class is its own"))));
+  EXPECT_THAT(foundFaults(chainOf(3) +
+                          "my:X a owl:Class ; rdfs:subClassOf my:C2 , my:Y .\n"
+                          "my:Y a owl:Class ; rdfs:subClassOf my:X .\nmy:Z a owl:Class ; rdfs:subClassOf my:X .\n"),
+              AllOf(HasSubstr("X is below Y and above it"), HasSubstr("Y is below X and above it"),
+                    Not(HasSubstr("Z: the class is its own"))));
 }
 
 TEST(OntologyCheck, RefusesASuperclassThatIsDefinedNowhere) {
