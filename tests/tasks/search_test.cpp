@@ -6,6 +6,7 @@
 #include <numeric>
 #include <random>
 
+#include "mapping/change/map_update.hpp"
 #include "mapping/ways/ways.hpp"
 #include "rdf/ontology/ontology.hpp"
 #include "rdf/vocabulary.hpp"
@@ -201,6 +202,24 @@ TEST(SearchField, FindsAWayWhereverItRuns) {
     }
   }
   EXPECT_GT(on_line, 20U);
+}
+
+TEST(SearchField, FindsALineThatRunsFarBeyondTheMap) {
+  const ScratchFolder folder;
+  const std::filesystem::path file = folder.path() / "map.clx";
+  std::filesystem::copy_file(CampusMap::shared().file(), file);
+  updateMap(file,
+            "PREFIX geo: <http://www.opengis.net/ont/geosparql#> INSERT DATA { <http://e.x/way> a <http://e.x/Far> ; "
+            "geo:hasGeometry <http://e.x/line> . <http://e.x/line> geo:asWKT "
+            "\"MULTILINESTRING ((-1e12 1.1, 1e12 1.1), (1.1 1e9, 2.1 1e9))\"^^geo:wktLiteral }",
+            {}, silence());
+  const MapReader map(file);
+  const TerrainGrid terrain = terrainOf(map);
+  const rdf::OntologyView ontology = rdf::ontologyViewOf(ontologySources(map.inputs().ontology));
+  const auto marked = cellsWith(map, terrain, ontology, "http://e.x/Far", goneAmong(map));
+  const auto row = static_cast<int>((1.1 - terrain.frame.min_y) / terrain.frame.cell_m);
+  for (std::uint32_t cell = 0; cell < terrain.frame.size(); ++cell)
+    ASSERT_EQ(marked[cell] == 1, terrain.frame.rowOf(cell) == row) << "cell " << cell;
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 // Objects by their points, places and ways by what the map says of them.
 #include "tasks/ways/class_cells.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -26,17 +27,41 @@ std::string linesQuery(const std::string& class_iri) {
          "> ; geo:hasGeometry/geo:asWKT ?wkt }";
 }
 
-/// Marks the cells along the lines of a geometry: a way is near wherever it runs.
+/// The part of a line within the box: where it begins and ends, as shares of the line. Empty when it passes the box.
+struct LinePart {
+  double begin = 0, end = 1;
+};
+LinePart partWithin(const Eigen::AlignedBox2d& box, const Eigen::Vector2d& from, const Eigen::Vector2d& along) {
+  LinePart part;
+  for (int axis = 0; axis < 2; ++axis) {
+    if (along[axis] == 0) {
+      if (from[axis] < box.min()[axis] || from[axis] > box.max()[axis]) part.end = -1;
+      continue;
+    }
+    const double low = (box.min()[axis] - from[axis]) / along[axis],
+                 high = (box.max()[axis] - from[axis]) / along[axis];
+    part.begin = std::max(part.begin, std::min(low, high));
+    part.end = std::min(part.end, std::max(low, high));
+  }
+  return part;
+}
+
+/// Marks the cells along the lines of a geometry: a way is near wherever it runs. Cost: the cells that it crosses.
 void markLines(const GridFrame& frame, std::string_view wkt, std::vector<std::uint8_t>& marked) {
   const auto text = rdf::splitWkt(wkt);
   const auto shape = text ? rdf::readWkt(text->shape) : std::nullopt;
   if (!shape) return;
+  const Eigen::Vector2d corner(frame.min_x, frame.min_y), size(frame.columns, frame.rows);
+  const Eigen::AlignedBox2d grid(corner, corner + frame.cell_m * size);
   for (const rdf::WktPath& line : shape->lines)
     for (std::size_t i = 1; i < line.size(); ++i) {
       const Eigen::Vector2d from(line[i - 1].first, line[i - 1].second), to(line[i].first, line[i].second);
-      const double steps = std::max(1.0, std::ceil(2 * (to - from).norm() / frame.cell_m));
+      const LinePart part = partWithin(grid, from, to - from);
+      if (part.begin > part.end) continue;
+      const double share = part.end - part.begin;
+      const double steps = std::max(1.0, std::ceil(2 * share * (to - from).norm() / frame.cell_m));
       for (double step = 0; step <= steps; ++step)
-        if (const auto cell = frame.cellAt(from + step / steps * (to - from))) marked[*cell] = 1;
+        if (const auto cell = frame.cellAt(from + (part.begin + step / steps * share) * (to - from))) marked[*cell] = 1;
     }
 }
 
