@@ -39,8 +39,8 @@ TEST(ChangeSummary, TellsObjectsThatOnlyTheirStatesCallGoneOrNew) {
   SiteChanges changes = changesOfFive();
   EXPECT_THAT(objectsThatDifferByStates(changes), ElementsAre(1, 2));
   EXPECT_EQ(summaryOf(changes),
-            "since 2023-11-14T22:13:20.000000Z: 0 changes; 3 objects are there, 1 were not observed again; 2 more came "
-            "or went by their states alone, which is less sure");
+            "since 2023-11-14T22:13:20.000000Z: 0 changes; 3 objects are there, 1 was not observed again; 2 more came "
+            "or went by the states alone, which is less sure");
 }
 
 TEST(ChangeSummary, DoesNotCountObjectsThatAChangeNames) {
@@ -51,8 +51,8 @@ TEST(ChangeSummary, DoesNotCountObjectsThatAChangeNames) {
   changes.times.until_s = 1.7e9 + 60;
   EXPECT_THAT(objectsThatDifferByStates(changes), IsEmpty());
   EXPECT_EQ(summaryOf(changes),
-            "since 2023-11-14T22:13:20.000000Z until 2023-11-14T22:14:20.000000Z: 1 changes; 3 objects are there, 1 "
-            "were not observed again");
+            "since 2023-11-14T22:13:20.000000Z until 2023-11-14T22:14:20.000000Z: 1 change; 3 objects are there, 1 "
+            "was not observed again");
 }
 
 }  // namespace

@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <vector>
+
 namespace cluxel::tasks {
 namespace {
 
@@ -178,6 +181,48 @@ TEST(ChangedCluxels, RaysBesideAThingDoNotShowThatItIsGone) {
   EXPECT_EQ(vanishedIn(passedAside(30)), 0);
   EXPECT_EQ(vanishedIn(passedAside(23)), 0);
   EXPECT_EQ(vanishedIn(passedAside(22)), 1);
+}
+
+/// Three scans of each of three visits, of which those from `since` on are after.
+Visits threeVisits(std::size_t since) {
+  std::vector<double> times_s;
+  for (const double visit : {0, 1, 2})
+    for (const double scan : {0, 1, 2}) times_s.push_back(86400 * visit + 60 * scan);
+  return Visits(times_s, 86400 * static_cast<double>(since));
+}
+
+ScanNumbers scansOfVisit(std::size_t visit) {
+  return bits(3) << 3 * visit;
+}
+
+/// Two things of three columns each stood on visits of one kind, the left one on the first of them, the right one on
+/// the second. The left one's first `hidden` rows were not observed on the second. The other visit saw neither.
+std::vector<ChangeGroup> clustersOfTwoThings(CluxelChange kind, std::size_t hidden) {
+  const bool has_vanished = kind == CluxelChange::Vanished;
+  const std::size_t first = has_vanished ? 0 : 1, second = first + 1, without = has_vanished ? 2 : 0;
+  ChangedCluxels all = thereBefore();
+  all.visits = threeVisits(has_vanished ? 2 : 1);
+  all.changes.assign(all.cluxels.size(), kind);
+  for (std::size_t i = 0; i < all.cluxels.size(); ++i) {
+    const bool is_left = i % 6 < 3;
+    RayFindings with{.hits = scansOfVisit(is_left ? first : second),
+                     .seen_through = scansOfVisit(is_left ? second : first)};
+    if (is_left && i / 6 < hidden) with.seen_through = {};
+    const RayFindings gone{.seen_through = scansOfVisit(without)};
+    all.before[i] = has_vanished ? with : gone, all.after[i] = has_vanished ? gone : with;
+  }
+  return clustersOf(kind, all);
+}
+
+TEST(ChangedCluxels, AThingBesideThePlaceOfOneThatLeftBeforeIsToldAlone) {
+  for (const CluxelChange kind : {CluxelChange::Vanished, CluxelChange::Appeared})
+    for (const std::size_t hidden : {0U, 2U}) {
+      const std::vector<ChangeGroup> clusters = clustersOfTwoThings(kind, hidden);
+      const auto of_right = [](std::uint32_t cluxel) { return cluxel % 6 >= 3; };
+      ASSERT_EQ(clusters.size(), 1U) << "with hidden rows: " << hidden;
+      EXPECT_EQ(std::count_if(clusters[0].begin(), clusters[0].end(), of_right), 15);
+      EXPECT_EQ(clusters[0].size(), 15U);
+    }
 }
 
 }  // namespace

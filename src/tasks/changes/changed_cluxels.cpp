@@ -21,8 +21,8 @@ class Clustering {
       : kind_(kind),
         all_(all),
         cluxels_(all.cluxels),
-        has_left_(leftIn(kind, all)),
-        groups_(statesIn(kind, all, has_left_), [this](auto cluxel, const auto& visit) {
+        has_left_(all.changes.size(), false),
+        groups_(statesIn(kind, all), [this](auto cluxel, const auto& visit) {
           for (const std::uint32_t other : cluxels_.neighbours(cluxel))
             if (!has_left_[other]) visit(other);
         }) {}
@@ -37,11 +37,15 @@ class Clustering {
     return clusters;
   }
 
-  std::vector<ChangeGroup> sureOf(const std::vector<ChangeGroup>& clusters) const {
+  std::vector<ChangeGroup> sureOf(std::vector<ChangeGroup> clusters) {
+    has_left_ = leftIn(kind_, all_);
+    for (const ChangeGroup& cluster : clusters) markRestsOfLeft(cluster);
     std::vector<ChangeGroup> sure;
-    for (const ChangeGroup& cluster : clusters)
-      for (ChangeGroup& rest : groups_.connectedAmong(cluster, kMinCluxels))
-        if (isSure(rest) && !hasLeft(rest, cluster)) sure.push_back(std::move(rest));
+    for (ChangeGroup& cluster : clusters) {
+      std::erase_if(cluster, [this](std::uint32_t cluxel) { return has_left_[cluxel]; });
+      for (ChangeGroup& connected : groups_.connectedAmong(cluster, kMinCluxels))
+        if (isSure(connected)) sure.push_back(std::move(connected));
+    }
     std::sort(sure.begin(), sure.end());
     return sure;
   }
@@ -58,13 +62,12 @@ class Clustering {
   static constexpr double kDense = 0.6;  ///< share of scans with few rays that hit a thing through which few rays pass
   static constexpr perception::PresenceParams kPresence{};
 
-  static std::vector<ChangeState> statesIn(CluxelChange kind, const ChangedCluxels& all,
-                                           const std::vector<bool>& has_left) {
+  static std::vector<ChangeState> statesIn(CluxelChange kind, const ChangedCluxels& all) {
     std::vector<ChangeState> states;
-    for (std::size_t i = 0; i < all.changes.size(); ++i)
-      states.push_back(all.changes[i] == CluxelChange::Undecided || has_left[i] ? ChangeState::Undecided
-                       : all.changes[i] == kind                                 ? ChangeState::Changed
-                                                                                : ChangeState::Stable);
+    for (const CluxelChange change : all.changes)
+      states.push_back(change == CluxelChange::Undecided ? ChangeState::Undecided
+                       : change == kind                  ? ChangeState::Changed
+                                                         : ChangeState::Stable);
     return states;
   }
 
@@ -124,17 +127,16 @@ class Clustering {
     return votes.take();
   }
 
-  /// Whether what is left of a cluster belongs to a thing that was away in the end. The cluxels that have left, and
-  /// that the same visit hit last, tell of this thing: later visits may not have seen the rest.
-  bool hasLeft(const ChangeGroup& rest, const ChangeGroup& cluster) const {
-    const auto lastHit = [this](std::uint32_t cluxel) { return lastVisit(findingsAt(cluxel, true)->hits, all_); };
-    std::uint32_t last = 0;
-    for (const std::uint32_t cluxel : rest)
-      if (findingsAt(cluxel, true)->isHit()) last = std::max(last, lastHit(cluxel));
-    ChangeGroup thing = rest;
+  /// Later visits may not have seen all of a thing that left. So the cluxels of a cluster that one visit hit last are
+  /// judged together: when they were away in the end, all of them have left.
+  void markRestsOfLeft(const ChangeGroup& cluster) {
+    std::map<std::uint32_t, ChangeGroup> by_last_visit;
     for (const std::uint32_t cluxel : cluster)
-      if (has_left_[cluxel] && lastHit(cluxel) == last) thing.push_back(cluxel);
-    return isAwayAtEnd(votesWithIt(thing));
+      if (const RayFindings& there = *findingsAt(cluxel, true); there.isHit())
+        by_last_visit[lastVisit(there.hits, all_)].push_back(cluxel);
+    for (const auto& [visit, things] : by_last_visit)
+      if (isAwayAtEnd(votesWithIt(things)))
+        for (const std::uint32_t cluxel : things) has_left_[cluxel] = true;
   }
 
   void addScansOfVisitsWithoutIt(const ChangeGroup& cluster, const ChangeGroup& around, ScanNumbers& without) const {
@@ -243,7 +245,7 @@ class Clustering {
   CluxelChange kind_;
   const ChangedCluxels& all_;
   const perception::SceneCluxels& cluxels_;
-  std::vector<bool> has_left_;  ///< by cluxel
+  std::vector<bool> has_left_;  ///< by cluxel: it is not near to any; known once clusters are judged
   ChangeGroups groups_;
 };
 
@@ -266,7 +268,7 @@ CluxelChange changeOf(const RayFindings& before, const RayFindings& after) {
 }
 
 std::vector<ChangeGroup> clustersOf(CluxelChange kind, const ChangedCluxels& all) {
-  const Clustering clustering(kind, all);
+  Clustering clustering(kind, all);
   return clustering.sureOf(clustering.all());
 }
 

@@ -130,17 +130,16 @@ class Things {
 
   /// Names the thing after the object that most of its cluxels belong to.
   void addThing(std::vector<std::uint32_t> cluxels, const Eigen::AlignedBox3d& box, const VotesOfTimes& votes) {
-    if (cluxels.empty()) return;
+    if (cluxels.empty() || isAwayAtEnd(votes[time_])) return;
     ChangedThing thing{std::move(cluxels), std::nullopt, false, box, visitsWithIt(votes[time_])};
     std::map<std::uint32_t, std::size_t> counts;
     for (const std::uint32_t cluxel : thing.cluxels) ++counts[object_of_cluxel_.at(cluxel)];
     const auto most = std::max_element(counts.begin(), counts.end(),
                                        [](const auto& a, const auto& b) { return a.second < b.second; });
-    const ObjectStates* states = most->first == mapping::kNoObject ? nullptr : statesOf(most->first);
-    if (isAwayAtEnd(votes[time_])) return;
     if (most->first != mapping::kNoObject) {
       thing.object = most->first;
       const auto stable = survey_.stable_of_object.find(most->first);
+      const ObjectStates* states = statesOf(most->first);
       const bool is_gone_as_whole = states == nullptr || stateAtOtherTime(*states) == PresenceState::Absent;
       thing.is_part = (stable != survey_.stable_of_object.end() && stable->second > most->second) || !is_gone_as_whole;
       if (states != nullptr && isHiddenPart(*states, votes[1 - time_])) return;

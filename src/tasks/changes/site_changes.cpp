@@ -8,7 +8,6 @@
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <set>
 #include <tuple>
 
 #include "base/utc_time.hpp"
@@ -191,33 +190,48 @@ std::vector<SiteChanges> changesOfVisits(const mapping::MapReader& map, unsigned
   return found;
 }
 
+namespace {
+
+/// "3 changes"
+std::string counted(std::size_t count, std::string_view one, std::string_view many) {
+  return std::to_string(count) + " " + std::string(count == 1 ? one : many);
+}
+
+}  // namespace
+
 std::vector<std::uint32_t> objectsThatDifferByStates(const SiteChanges& changes) {
-  std::set<std::uint32_t> named;
+  std::vector<const ChangedThing*> gone, come;
   for (const SiteChange& change : changes.changes) {
-    if (change.thing.object) named.insert(*change.thing.object);
-    if (change.now && change.now->object) named.insert(*change.now->object);
+    (change.kind == SiteChange::Kind::Appeared ? come : gone).push_back(&change.thing);
+    if (change.now) come.push_back(&*change.now);
   }
   std::vector<std::uint32_t> objects;
   for (const ObjectStates& states : changes.states) {
     const bool went = states.before == PresenceState::Present && states.after == PresenceState::Absent;
     const bool came = states.before == PresenceState::Absent && states.after == PresenceState::Present;
-    if ((went || came) && !named.contains(states.object)) objects.push_back(states.object);
+    const auto tells = [&](const ChangedThing* thing) {
+      return thing->object == states.object || thing->box.contains(states.box.center());
+    };
+    if ((went && std::none_of(gone.begin(), gone.end(), tells)) ||
+        (came && std::none_of(come.begin(), come.end(), tells)))
+      objects.push_back(states.object);
   }
   return objects;
 }
 
 std::string summaryOf(const SiteChanges& changes) {
   const auto objectsWhere = [&](const auto& holds) {
-    return std::to_string(std::count_if(changes.states.begin(), changes.states.end(), holds));
+    return static_cast<std::size_t>(std::count_if(changes.states.begin(), changes.states.end(), holds));
   };
   const auto isThere = [](const ObjectStates& states) { return states.after == PresenceState::Present; };
   const ComparedTimes& times = changes.times;
   std::string text = "since " + dateTimeText(times.since_s);
   if (times.endsEarly()) text += " until " + dateTimeText(times.until_s);
-  text += ": " + std::to_string(changes.changes.size()) + " changes; " + objectsWhere(isThere) +
-          " objects are there, " + objectsWhere(wasNotObservedAgain) + " were not observed again";
+  text += ": " + counted(changes.changes.size(), "change", "changes") + "; " +
+          counted(objectsWhere(isThere), "object is", "objects are") + " there, " +
+          counted(objectsWhere(wasNotObservedAgain), "was", "were") + " not observed again";
   if (const std::size_t more = objectsThatDifferByStates(changes).size(); more > 0)
-    text += "; " + std::to_string(more) + " more came or went by their states alone, which is less sure";
+    text += "; " + std::to_string(more) + " more came or went by the states alone, which is less sure";
   return text;
 }
 
