@@ -34,12 +34,6 @@ bool isMuch(std::uint64_t bytes, std::uint64_t of_bytes, double max_share) {
   return bytes > kSmallestGain && static_cast<double>(bytes) > max_share * static_cast<double>(of_bytes);
 }
 
-/// Whether a small map has many half-filled pages of indexes.
-bool isToBeFilled(const rdf::FreeSpace& space) {
-  return space.file_bytes <= kSmallMap &&
-         isMuch(space.bytes - space.in_free_pages, space.file_bytes - space.in_free_pages, kMaxFreeShare);
-}
-
 struct stat statusOf(const fs::path& file) {
   struct stat status {};
   if (::stat(file.c_str(), &status) != 0)
@@ -53,6 +47,14 @@ void refuseOtherNames(const fs::path& map) {
     throw Error(ErrorKind::StoreUnavailable, map.string() +
                                                  ": has another name (a hard link), which would keep the old file; "
                                                  "remove the other name, or write the compacted map to another file");
+}
+
+/// Whether a small map, of which no other name (a hard link) would keep the old file, has many half-filled pages of
+/// indexes.
+bool isToBeFilled(const fs::path& map, const rdf::FreeSpace& space) {
+  return space.file_bytes <= kSmallMap &&
+         isMuch(space.bytes - space.in_free_pages, space.file_bytes - space.in_free_pages, kMaxFreeShare) &&
+         statusOf(map).st_nlink == 1;
 }
 
 /// The copy goes to the owner and the group of the map, which would otherwise lose it to whoever compacts it.
@@ -130,7 +132,7 @@ void compactIfSparse(const fs::path& map, ProgressSink& sink, double max_free_sh
 Compaction compactIfSparse(const fs::path& map, const rdf::FreeSpace& space, ProgressSink& sink,
                            double max_free_share) {
   try {
-    if (!fs::exists(copyOf(map)) && !isMuch(space.bytes, space.file_bytes, max_free_share) && !isToBeFilled(space))
+    if (!fs::exists(copyOf(map)) && !isMuch(space.bytes, space.file_bytes, max_free_share) && !isToBeFilled(map, space))
       return Compaction::NotNeeded;
     if (fs::space(fs::absolute(withoutLinks(map)).parent_path()).available < fs::file_size(map))
       throw Error(ErrorKind::StoreUnavailable, "there is no room beside it for a copy");
