@@ -2,12 +2,18 @@
 // Operator's statements are inputs of a map: inference follows them in the same commit, and a build keeps them.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "base/file_bytes.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/asking_rules.hpp"
+#include "mapping/build/operator_statements.hpp"
+#include "mapping/change/map_change.hpp"
 #include "mapping/change/map_update.hpp"
 #include "mapping/change/rdf_loading.hpp"
 #include "mapping/change/statement_change.hpp"
+#include "rdf/file/map_replacement.hpp"
+#include "rdf/map_iris.hpp"
 #include "sparql/query_engine.hpp"
 
 namespace cluxel::mapping {
@@ -88,6 +94,51 @@ TEST(OperatorStatements, OfAClassThatTheOntologyLacksAreKeptAsDormant) {
   buildPark(folder.path(), {.force = true, .drop_statements = true});
   loadRdfFiles(map, {file}, {}, silence());
   EXPECT_TRUE(canonicalText(map) == built);
+}
+
+/// The shipped inputs and two classes of one's own, of which one is a class of objects.
+MapInputs withOwnClasses(const std::string& of_objects, const std::string& other) {
+  MapInputs inputs = shippedInputs();
+  inputs.ontology.push_back({"own.ttl",
+                             "@prefix ex: <https://example.org/> . @prefix owl: <http://www.w3.org/2002/07/owl#> . "
+                             "@prefix rdfs: <http://www.w3.org/2000/01/rdf-schema#> . ex:" +
+                                 of_objects + " a owl:Class ; rdfs:subClassOf <" + vocabulary::clx("Vehicle") +
+                                 "> . ex:" + other + " a owl:Class ."});
+  return inputs;
+}
+
+TEST(OperatorStatements, GiveTheSameMapInABuildWhenTheOntologyHasChanged) {
+  const ScratchFolder folder;
+  const fs::path map = folder.path() / "map.clx", again = folder.path() / "again.clx";
+  writeScanFile(parkWithBench(), folder.path() / "park.pcd");
+  const scan::ScanSet scans = scansOf({folder.path() / "park.pcd"});
+  buildMap(scans, withOwnClasses("Car", "Late"), map, {}, silence());
+  StatementEdit edit;
+  std::vector<Quad> of_earlier_program;
+  {
+    const MapReader reader(map);
+    const std::vector<rules::SemanticObject> objects = reader.objects();
+    const auto bench = std::find_if(objects.begin(), objects.end(), [](const auto& o) { return !o.is_class_wide; });
+    ASSERT_NE(bench, objects.end());
+    const PointAnchor points = anchorOf(reader.stagesWithPoints(), *bench);
+    edit.added.push_back({StatementKind::Is, "", Term::iri("https://example.org/Car"), points, {}});
+    of_earlier_program = quadsOf({StatementKind::Fact, vocabulary::clx("porosity"), Term::literal("1"), points, {}});
+  }
+  changeStatements(map, edit, {}, silence());
+  const std::string object = rdf::mapIri("object", std::string(31, '0') + "1");
+  updateMap(map, kPrefixes + "INSERT DATA { <" + object + "> a ex:Late }", {}, silence());
+  {
+    rdf::WriteTransaction transaction = rdf::writeMap(map);
+    addOperatorStatements(transaction, of_earlier_program);
+    transaction.commit();
+  }
+  const MapInputs changed = withOwnClasses("Late", "Car");
+  applyInputs(
+      map, [&](const MapInputs&) { return changed; }, {}, silence());
+  const std::vector<Quad> exported = operatorStatements(MapReader(map).quads());
+  buildMap(scans, changed, again, {.statements = exported}, silence());
+  EXPECT_TRUE(canonicalText(map) == canonicalText(again));
+  EXPECT_EQ(operatorStatements(MapReader(again).quads()).size(), exported.size());
 }
 
 TEST(OperatorStatements, ChangeObjectsWhereRulesAskForThem) {

@@ -22,6 +22,12 @@ const rules::ClassCatalogue& classes() {
   return catalogue;
 }
 
+class NotesOnValues : public ProgressSink {
+ public:
+  void note(std::string_view text) override { all.append(text).append("\n"); }
+  std::string all;
+};
+
 std::string faultOf(const Statement& statement) {
   try {
     requireStatable(statement, classes());
@@ -71,6 +77,25 @@ TEST(StatedValues, AreNoFactsThatTheMapComputes) {
   EXPECT_THAT(faultOf(fact(clx("height"), Term::literal("3"))), HasSubstr("is computed by the map"));
   EXPECT_THAT(faultOf(fact("http://example.org/owner", Term::blank("b"))), HasSubstr("blank node"));
   EXPECT_THAT(faultOf(fact("http://example.org/owner", Term::literal("\xff"))), HasSubstr("not UTF-8"));
+}
+
+TEST(StatedValues, ThatAMapMayHaveAreKeptWithANote) {
+  const auto noteOf = [](const Statement& statement) {
+    NotesOnValues notes;
+    requireStatableOrKept(statement, classes(), notes);
+    return notes.all;
+  };
+  EXPECT_EQ(noteOf(ofClass(clx("Tree"))), "");
+  EXPECT_EQ(noteOf(fact("http://example.org/owner", Term::literal("the city"))), "");
+  EXPECT_THAT(noteOf(ofClass(clx("Unicorn"))), HasSubstr("has no effect"));
+  EXPECT_THAT(noteOf(ofClass(clx("TreeTrunk"))), HasSubstr("has no effect: <" + clx("TreeTrunk") + "> is no class"));
+  EXPECT_THAT(noteOf({StatementKind::IsNot, "", Term::iri(clx("TreeTrunk")), {}, {}}), HasSubstr("is kept"));
+  EXPECT_THAT(noteOf(fact(clx("height"), Term::literal("3"))), HasSubstr("is computed by the map"));
+  for (const Statement& faulty :
+       {fact(clx("height"), Term::blank("b")), fact(clx("height"), Term::literal("\xff")), region({}),
+        fact("http://example.org/owner", Term::blank("b")), fact(rdf::vocabulary::rdf("type"), Term::iri(clx("Tree"))),
+        Statement{StatementKind::Is, "", Term::literal("Tree"), {}, {}}})
+    EXPECT_THROW(noteOf(faulty), Error);
 }
 
 TEST(StatedValues, AreRegionsWithAnArea) {

@@ -30,7 +30,6 @@
 #include "mapping/layers/stored_layers.hpp"
 #include "mapping/map_state.hpp"
 #include "mapping/statements/named_resources.hpp"
-#include "mapping/statements/stated_subjects.hpp"
 #include "mapping/statements/stated_values.hpp"
 #include "mapping/window/semantic_update.hpp"
 #include "rdf/store/quad_store.hpp"
@@ -268,17 +267,13 @@ BuildReport built(const scan::ScanSet& scans, const MapInputs& inputs, const fs:
   // A faulty statement is refused before anything is written.
   for (const Statement& statement : statementsAmong(params.statements)) {
     try {
-      requireStatableOrDormant(statement, parsed.rules.catalogue, sink);
+      requireStatableOrKept(statement, parsed.rules.catalogue, sink);
     } catch (const Error& fault) {
       throw Error(ErrorKind::FaultyInput, "operator statement " + statement.id().hex() + ": " + fault.what());
     }
   }
-  std::size_t about_objects = 0;
-  for (const Quad& quad : params.statements) {
-    if (!namesObject(quad.subject)) continue;
-    requireStatableOfUnknown(quad, parsed.rules.catalogue);
-    ++about_objects;
-  }
+  const auto about_objects = std::count_if(params.statements.begin(), params.statements.end(),
+                                           [](const Quad& quad) { return namesObject(quad.subject); });
   if (about_objects > 0)
     sink.note(
         std::to_string(about_objects) +

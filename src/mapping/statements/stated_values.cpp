@@ -87,6 +87,25 @@ void requireRegion(const RegionAnchor& region) {
     throw Error(ErrorKind::InvalidArgument, "the region has no area; give its corners in their order along the border");
 }
 
+bool isComputed(const std::string& property) {
+  return std::any_of(kComputed.begin(), kComputed.end(),
+                     [&](std::string_view local) { return property == clx(local); });
+}
+
+/// Of a fact.
+void requireValue(const Statement& statement) {
+  if (statement.value.kind == TermKind::BlankNode)
+    throw Error(ErrorKind::InvalidArgument,
+                "<" + statement.property + "> of an object is a blank node; state an IRI or a literal");
+  if (firstInvalidUtf8(statement.value.text))
+    throw Error(ErrorKind::InvalidArgument, "the value of <" + statement.property + "> is not UTF-8");
+}
+
+bool namesClass(const Statement& statement) {
+  return (statement.kind == StatementKind::Is || statement.kind == StatementKind::IsNot) &&
+         statement.value.kind == TermKind::Iri;
+}
+
 }  // namespace
 
 bool isClassOfObjects(const std::string& iri, const rules::ClassCatalogue& classes) {
@@ -96,9 +115,7 @@ bool isClassOfObjects(const std::string& iri, const rules::ClassCatalogue& class
 void requireStatable(const std::string& property) {
   const bool is_type = property == rdf::vocabulary::rdf("type");
   const bool is_geometry = property.starts_with(rdf::vocabulary::kGeo) || property.starts_with(rdf::vocabulary::kSosa);
-  const bool is_computed =
-      std::any_of(kComputed.begin(), kComputed.end(), [&](std::string_view local) { return property == clx(local); });
-  if (is_type || is_geometry || is_computed)
+  if (is_type || is_geometry || isComputed(property))
     throw Error(ErrorKind::InvalidArgument,
                 "<" + property + "> of an object is computed by the map; state its class, or another property");
 }
@@ -116,19 +133,28 @@ void requireStatable(const Statement& statement, const rules::ClassCatalogue& cl
       break;
   }
   requireStatable(statement.property);
-  if (statement.value.kind == TermKind::BlankNode)
-    throw Error(ErrorKind::InvalidArgument,
-                "<" + statement.property + "> of an object is a blank node; state an IRI or a literal");
-  if (firstInvalidUtf8(statement.value.text))
-    throw Error(ErrorKind::InvalidArgument, "the value of <" + statement.property + "> is not UTF-8");
+  requireValue(statement);
 }
 
 void requireStatableOrDormant(const Statement& statement, const rules::ClassCatalogue& classes, ProgressSink& sink) {
-  const bool names_class = (statement.kind == StatementKind::Is || statement.kind == StatementKind::IsNot) &&
-                           statement.value.kind == TermKind::Iri;
-  if (!names_class || classes.find(statement.value.text) != nullptr) return requireStatable(statement, classes);
+  if (!namesClass(statement) || classes.find(statement.value.text) != nullptr)
+    return requireStatable(statement, classes);
   sink.note("the statement " + statement.id().hex() + " has no effect: the map's ontology knows no class <" +
             statement.value.text + ">");
+}
+
+void requireStatableOrKept(const Statement& statement, const rules::ClassCatalogue& classes, ProgressSink& sink) {
+  const bool is_known_class = namesClass(statement) && classes.find(statement.value.text) != nullptr;
+  const bool is_computed = statement.kind == StatementKind::Fact && isComputed(statement.property);
+  if (!is_known_class && !is_computed) return requireStatableOrDormant(statement, classes, sink);
+  if (is_computed) requireValue(statement);
+  try {
+    requireStatable(statement, classes);
+  } catch (const Error& fault) {
+    const bool has_effect = statement.kind != StatementKind::Is;
+    sink.note("the statement " + statement.id().hex() +
+              (has_effect ? " is kept, but nobody can make it now: " : " has no effect: ") + fault.what());
+  }
 }
 
 void requireNoWholeClass(const rdf::ReadTransaction& transaction, const Statement& statement) {

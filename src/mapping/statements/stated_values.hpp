@@ -26,6 +26,11 @@ void requireStatable(const Statement& statement, const rules::ClassCatalogue& cl
 /// map that had another ontology. It has no effect until an ontology knows the class.
 void requireStatableOrDormant(const Statement& statement, const rules::ClassCatalogue& classes, ProgressSink& sink);
 
+/// For statements that a map may have had: with another ontology, or from an earlier program. As
+/// requireStatableOrDormant(), but one of a class that is none of objects, or of a property that the map computes, is
+/// noted and kept, too: a map that has it keeps it through every change, and a build must give the same map.
+void requireStatableOrKept(const Statement& statement, const rules::ClassCatalogue& classes, ProgressSink& sink);
+
 /// Throws Error (InvalidArgument) for the statement that something is of a class of which the map has one object over
 /// all of it, as the ground.
 void requireNoWholeClass(const rdf::ReadTransaction& transaction, const Statement& statement);
