@@ -6,10 +6,12 @@
 
 #include <set>
 
+#include "base/file_bytes.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/build/operator_statements.hpp"
 #include "mapping/change/map_change.hpp"
 #include "mapping/change/map_update.hpp"
+#include "mapping/change/rdf_loading.hpp"
 #include "mapping/change/statement_change.hpp"
 #include "mapping/small_campus.hpp"
 #include "mapping/statements/stated_values.hpp"
@@ -132,6 +134,27 @@ TEST_F(StatedQuads, OfAnObjectThatComesLaterCannotContradictIt) {
   EXPECT_THAT(faultOf("INSERT DATA { <" + object + "> a <" + rdf::vocabulary::clx("Person") + "> }"),
               testing::AllOf(HasSubstr(object), HasSubstr("cannot be stated before the map has the object")));
   EXPECT_TRUE(canonicalText(map()) == before);
+}
+
+TEST_F(StatedQuads, ThatStandUnderTheNameOfAnObjectAreNotedWhenTheyAreStatedAgain) {
+  const std::string object = "<" + objectOnlyIn(built->path() / "three.clx", map()) + ">";
+  const std::string quad = object + " " + kLabel + " \"later\" ";
+  const std::string remedy =
+      "1 quad stands already under the name of an object that the map knows now, such as " + object;
+  EXPECT_THAT(update("INSERT DATA { " + quad + "}"), Not(HasSubstr("stands already")));
+  EXPECT_THAT(update("INSERT DATA { " + quad + "}"), Not(HasSubstr("stands already"))) << "there is no object yet";
+  extendMap(map(), scans(2, 3), {}, silence());
+  EXPECT_THAT(update("INSERT DATA { " + quad + "}"), HasSubstr(remedy));
+  EXPECT_THAT(update("DELETE DATA { " + kInOperator + "{ " + quad + "} } ; INSERT DATA { " + quad + "}"),
+              HasSubstr(remedy));
+  const fs::path file = folder.path() / "later.nt";
+  writeFile(file, quad + ".\n");
+  Notes notes;
+  EXPECT_EQ(loadRdfFiles(map(), {file}, {}, notes).added, 0U);
+  EXPECT_THAT(notes.all, HasSubstr(remedy));
+  EXPECT_THAT(update("DELETE DATA { " + kInOperator + "{ " + quad + "} }"), Not(HasSubstr("stands already")));
+  EXPECT_THAT(update("INSERT DATA { " + quad + "}"), HasSubstr("anchored to their points"));
+  EXPECT_EQ(knownStatements(MapReader(map()).quads()).size(), 1U);
 }
 
 /// As a program of an earlier version left them.

@@ -95,6 +95,7 @@ sparql::UpdateReport updateMap(const std::filesystem::path& file, const std::str
     inferAfterUpdate(transaction, before, sink, check, params);
     check(0);
   }
+  if (is_map) noteStandingQuads(transaction, before, sink);
   transaction.commit();
   for (const Diagnostic& warning : report.warnings) sink.note(format(warning));
   return report;

@@ -97,6 +97,7 @@ RdfLoadReport loadRdfFiles(const fs::path& store, const std::vector<fs::path>& f
   }
   report.added = reader.size() - before;
   if (is_map && report.added > 0) inferAfterUpdate(transaction, named_before, sink, {}, {.operation = "load"});
+  if (is_map) noteStandingQuads(transaction, named_before, sink);
   transaction.commit();
   made.keep();
   return report;

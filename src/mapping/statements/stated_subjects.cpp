@@ -2,6 +2,8 @@
 // Object names change with their members; points do not.
 #include "mapping/statements/stated_subjects.hpp"
 
+#include <map>
+#include <optional>
 #include <set>
 
 #include "cluxel/error.hpp"
@@ -17,12 +19,28 @@ namespace cluxel::mapping {
 namespace {
 
 /// The present object that an IRI means.
+class KnownObjects {
+ public:
+  explicit KnownObjects(const rdf::ReadTransaction& transaction)
+      : transaction_(transaction), lineage_(rdf::QuadReader(transaction), storedObjectIds(transaction)) {}
+
+  std::optional<ContentHash> find(const std::string& iri) const {
+    const std::optional<ContentHash> object = hashIn(iri, "object");
+    if (object && storedRecord(transaction_, *object)) return object;
+    const auto former = lineage_.find(iri);
+    return former ? std::optional(former->object) : std::nullopt;
+  }
+
+ private:
+  const rdf::ReadTransaction& transaction_;
+  Lineage lineage_;
+};
+
+/// What a statement about such an object is anchored to.
 class StatedObjects {
  public:
   StatedObjects(const rdf::ReadTransaction& transaction, const ParsedInputs& parsed)
-      : transaction_(transaction),
-        stages_(parsed.model, parsed.inputs.params),
-        lineage_(rdf::QuadReader(transaction), storedObjectIds(transaction)) {}
+      : transaction_(transaction), stages_(parsed.model, parsed.inputs.params), known_(transaction) {}
 
   /// Of a class-wide object its class, else the points of an object. Absent when the IRI means none.
   struct Anchor {
@@ -30,7 +48,7 @@ class StatedObjects {
     std::string class_iri;
   };
   std::optional<Anchor> anchorOfIri(const std::string& iri) {
-    const std::optional<ContentHash> object = objectOf(iri);
+    const std::optional<ContentHash> object = known_.find(iri);
     if (!object) return std::nullopt;
     const auto record = storedRecord(transaction_, *object);
     if (record && record->is_class_wide) return Anchor{{}, record->class_iri};
@@ -38,16 +56,9 @@ class StatedObjects {
   }
 
  private:
-  std::optional<ContentHash> objectOf(const std::string& iri) const {
-    const std::optional<ContentHash> object = hashIn(iri, "object");
-    if (object && storedRecord(transaction_, *object)) return object;
-    const auto former = lineage_.find(iri);
-    return former ? std::optional(former->object) : std::nullopt;
-  }
-
   const rdf::ReadTransaction& transaction_;
   TileStages stages_;
-  Lineage lineage_;
+  KnownObjects known_;
 };
 
 Statement statementOf(const Quad& quad, StatedObjects::Anchor anchor, const rules::ClassCatalogue& classes) {
@@ -121,6 +132,33 @@ void anchorStatedObjects(rdf::WriteTransaction& transaction, const ParsedInputs&
               " no object that this map has or had: what is stated of it changes no object, now or later, but queries "
               "find it");
   if (anchored > 0) sink.note(std::to_string(anchored) + " statements about objects are anchored to their points");
+}
+
+void noteStandingQuads(const rdf::ReadTransaction& transaction, const std::set<rdf::QuadIds>& before,
+                       ProgressSink& sink) {
+  const rdf::QuadReader reader(transaction);
+  std::optional<KnownObjects> known;
+  std::map<rdf::TermId, bool> is_known;  // by subject
+  std::string first;
+  std::size_t standing = 0;
+  for (const rdf::QuadIds& quad : before) {
+    auto subject = is_known.find(quad.s);
+    if (subject == is_known.end()) {
+      const Term term = reader.termOf(quad.s);
+      const bool is_name = namesObject(term);
+      if (is_name && !known) known.emplace(transaction);
+      subject = is_known.emplace(quad.s, is_name && known->find(term.text)).first;
+    }
+    if (!subject->second || !reader.contains(quad)) continue;
+    if (standing++ == 0) first = reader.termOf(quad.s).text;
+  }
+  if (standing == 0) return;
+  const bool is_one = standing == 1;
+  sink.note(std::to_string(standing) + (is_one ? " quad stands" : " quads stand") + " already under " +
+            (is_one ? "the name of an object" : "names of objects") + " that the map knows now, such as <" + first +
+            ">, and " + (is_one ? "changes" : "change") + " no object, also when stated again. To state " +
+            (is_one ? "it of the object, delete it" : "them of the objects, delete them") + " in one update, and add " +
+            (is_one ? "it" : "them") + " in the next");
 }
 
 NewStatements newStatements(const rdf::ReadTransaction& transaction) {

@@ -24,6 +24,11 @@ void requireStatableOfUnknown(const Quad& quad, const rules::ClassCatalogue& cla
 void anchorStatedObjects(rdf::WriteTransaction& transaction, const ParsedInputs& parsed,
                          const std::set<rdf::QuadIds>& before, ProgressSink& sink);
 
+/// Notes which of the quads that were there `before` (quadsThatNameResources()) are still there and have an object for
+/// their subject that the map knows by now: stating them again does nothing. Cost: that of the lineage of each subject.
+void noteStandingQuads(const rdf::ReadTransaction& transaction, const std::set<rdf::QuadIds>& before,
+                       ProgressSink& sink);
+
 /// What changed since the graph `observed` was written.
 struct NewStatements {
   std::vector<Statement> made;         ///< of graph `operator`, that `observed` does not tell of
