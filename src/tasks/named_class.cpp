@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A name is looked up as an IRI, with its prefix, as a local name and as a label, in this order.
+// A name is looked up as an IRI, with its prefix, as a local name, as a label, and as a local name whatever its case,
+// in this order.
 #include "tasks/named_class.hpp"
 
 #include <algorithm>
@@ -62,16 +63,33 @@ class ClassLookup {
     return found;
   }
 
-  /// By a label in any language, or by the local name whatever its case.
+  /// By a label in any language as it is written, else by one whatever its case, else by the local name whatever its
+  /// case, to which the class of the clx namespace has the first right.
   std::vector<std::string> labelled(const std::string& name) const {
     const std::string words = plainWords(name);
+    if (words.empty()) return {};
+    const auto withLabel = [&](const auto& is_meant) {
+      return classesWhere([&](const rdf::OntologyClass& known) {
+        return std::any_of(known.labels.begin(), known.labels.end(),
+                           [&](const auto& label) { return is_meant(label.second); });
+      });
+    };
+    if (auto found = withLabel([&](const std::string& label) { return label == name; }); !found.empty()) return found;
+    if (auto found = withLabel([&](const std::string& label) { return plainWords(label) == words; }); !found.empty())
+      return found;
+    std::vector<std::string> found =
+        classesWhere([&](const rdf::OntologyClass& known) { return plainWords(rdf::localName(known.iri)) == words; });
+    const auto own = [](const std::string& iri) { return iri.starts_with(rdf::vocabulary::kClx); };
+    if (std::any_of(found.begin(), found.end(), own))
+      std::erase_if(found, [&](const std::string& iri) { return !own(iri); });
+    return found;
+  }
+
+  template <typename Condition>
+  std::vector<std::string> classesWhere(const Condition& is_meant) const {
     std::vector<std::string> found;
-    for (const rdf::OntologyClass& known : ontology_.classes) {
-      const bool is_meant = plainWords(rdf::localName(known.iri)) == words ||
-                            std::any_of(known.labels.begin(), known.labels.end(),
-                                        [&](const auto& label) { return plainWords(label.second) == words; });
-      if (is_meant && !words.empty()) found.push_back(known.iri);
-    }
+    for (const rdf::OntologyClass& known : ontology_.classes)
+      if (is_meant(known)) found.push_back(known.iri);
     return found;
   }
 

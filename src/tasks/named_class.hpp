@@ -16,8 +16,9 @@ using Namespaces = std::multimap<std::string, std::string, std::less<>>;
 
 /// The IRI of a class. An IRI, also between < and >, and a name with a prefix ("clx:StreetSign") mean that class alone.
 /// A local name ("StreetSign") means the class of the clx namespace, else the only class that has it. Other words are
-/// the label of one class in some language ("street sign", whatever the case). `namespaces` is asked when there is a
-/// prefix other than clx. Throws Error (NotFound) for an unknown class, and for a name of several; lists those.
+/// the label of one class in some language ("street sign"; one as it is written has the first right, then one whatever
+/// its case), then a local name whatever its case, that of the clx namespace first. `namespaces` is asked when there is
+/// a prefix other than clx. Throws Error (NotFound) for an unknown class, and for a name of several; lists those.
 std::string classNamed(const rdf::OntologyView& ontology, const std::string& written,
                        const std::function<Namespaces()>& namespaces = {});
 /// The same with the prefixes of the map's ontology and rules. `ontology`: that of the map.

@@ -75,6 +75,24 @@ TEST(NamedClass, OfTheVocabularyHasTheFirstRightToALocalName) {
   EXPECT_EQ(named("Kiosk"), kTown + "Kiosk") << "the only class that is called so";
 }
 
+TEST(NamedClass, IsTheOneWithTheLabelThenTheOneOfTheVocabulary) {
+  EXPECT_EQ(named("tree"), clx("Tree")) << "its label; the town's Tree is called so in another case only";
+  EXPECT_EQ(named("TREE"), clx("Tree"));
+  EXPECT_EQ(named("kiosk"), kTown + "Kiosk");
+  const rdf::OntologyView without_labels = viewOf({{clx("Pole"), {}}, {kTown + "Pole", {}}, {kStore + "pole", {}}});
+  EXPECT_EQ(classNamed(without_labels, "POLE"), clx("Pole"));
+  const rdf::OntologyView two_cases = viewOf({{kStore + "A", {{"en", "pole"}}}, {kTown + "B", {{"en", "Pole"}}}});
+  EXPECT_EQ(classNamed(two_cases, "pole"), kStore + "A");
+  EXPECT_EQ(classNamed(two_cases, "Pole"), kTown + "B");
+  EXPECT_THROW(classNamed(two_cases, "POLE"), Error);
+}
+
+TEST(NamedClass, OfALocalNameAsItIsWrittenIsMeantBeforeALabel) {
+  const rdf::OntologyView view = viewOf({{clx("Tree"), {{"en", "tree"}}}, {kTown + "tree", {}}});
+  EXPECT_EQ(classNamed(view, "tree"), kTown + "tree") << "as lists and counts call it";
+  EXPECT_EQ(classNamed(view, "Tree"), clx("Tree"));
+}
+
 TEST(NamedClass, IsRefusedWithItsIrisWhenSeveralAreMeant) {
   EXPECT_THAT(faultOf("Car"), AllOf(HasSubstr("'Car' names 2 classes"), HasSubstr("<" + kTown + "Car>"),
                                     HasSubstr("<" + kStore + "Car>")));
