@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/ascii.hpp"
+#include "base/content_hash.hpp"
 #include "base/nearest_name.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/facts/semantic_layer.hpp"
@@ -106,6 +107,12 @@ class ClassLookup {
 }
 
 }  // namespace
+
+std::string distinctName(const std::string& class_iri) {
+  const std::string local = rdf::localName(class_iri);
+  if (class_iri == rdf::vocabulary::clx(local)) return local;
+  return local + "-" + ContentHasher().addText(class_iri).finish().hex().substr(0, 8);
+}
 
 std::string classNamed(const rdf::OntologyView& ontology, const std::string& written,
                        const std::function<Namespaces()>& namespaces) {

@@ -11,6 +11,10 @@
 
 namespace cluxel::tasks {
 
+/// A name that no other class shares, to make names of rules and places from: the local name of a class of the clx
+/// namespace; of others with digits of the IRI's hash ("Tree-1a2b3c4d"), the same in every map.
+std::string distinctName(const std::string& class_iri);
+
 /// The namespaces of prefixes. Files may give one prefix different namespaces.
 using Namespaces = std::multimap<std::string, std::string, std::less<>>;
 

@@ -16,6 +16,7 @@
 #include "tasks/campus_map_fixture.hpp"
 #include "tasks/rule_reference/rule_reference.hpp"
 #include "tasks/rule_teaching/lesson.hpp"
+#include "tasks/rule_teaching/lesson_text.hpp"
 #include "tasks/rule_teaching/separating_cuts.hpp"
 
 namespace cluxel::tasks {
@@ -188,6 +189,22 @@ TEST(RuleReference, HasEveryAttributeRelationAndRuleAndMeasuresClasses) {
   std::size_t objects = 0;
   for (const auto& [name, values] : measured.values()) objects += values.size();
   EXPECT_EQ(objects, map.objects().size());
+}
+
+TEST(RuleTeaching, GivesRulesOfClassesWithOneLocalNameTheirOwnNames) {
+  const MapReader& map = CampusMap::shared().map();
+  const RuleSet rules = parseInputs(map.inputs()).rules;
+  const auto idFor = [&](const std::string& class_iri) {
+    LessonCase lesson{0, class_iri, "taught.rules.yaml", {0}, {}, {}, ""};
+    const std::string text = ruleText(map, rules, lesson);
+    EXPECT_THAT(text, HasSubstr("id: " + lesson.rule_id + "\n"));
+    return lesson.rule_id;
+  };
+  const std::string own = idFor(rdf::vocabulary::clx("Tree"));
+  EXPECT_EQ(own, "taught/tree-" + map.scene().primitives[0].id.hex().substr(0, 8));
+  EXPECT_EQ(
+      (std::set<std::string>{own, idFor("http://t.example/town#Tree"), idFor("http://t.example/store#Tree")}).size(),
+      3U);
 }
 
 TEST(RuleReference, QuantilesAreThoseOfSortedValues) {

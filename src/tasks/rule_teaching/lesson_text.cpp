@@ -9,6 +9,7 @@
 #include "base/yaml/fault_list.hpp"
 #include "base/yaml/yaml_tree.hpp"
 #include "cluxel/error.hpp"
+#include "tasks/named_class.hpp"
 #include "tasks/rule_fitting/round_number.hpp"
 
 namespace cluxel::tasks {
@@ -138,7 +139,7 @@ std::string ruleText(const mapping::MapReader& map, const rules::RuleSet& rules,
   const perception::Scene& scene = map.scene();
   const rules::SemanticObject& object = map.byRules(map.objects()[lesson.object]);
   const std::string class_name = rules.shorten(lesson.class_iri);
-  lesson.rule_id = "taught/" + lowerCase(mapping::localName(lesson.class_iri)) + "-" +
+  lesson.rule_id = "taught/" + lowerCase(distinctName(lesson.class_iri)) + "-" +
                    scene.primitives[lesson.seeds.front()].id.hex().substr(0, 8);
   std::string body;
   if (std::find(rules.order.begin(), rules.order.end(), lesson.class_iri) == rules.order.end())

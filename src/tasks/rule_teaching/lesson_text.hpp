@@ -18,7 +18,7 @@ struct LessonCase {
   std::vector<perception::PrimitiveIndex> seeds;
   std::vector<AttributeCut> cuts;
   std::vector<std::string> guarded;  ///< ids of rules that must leave the case alone
-  std::string rule_id;               ///< of the new rule: "taught/tree-1a2b3c4d", with digits of the seed's hash
+  std::string rule_id;  ///< of the new rule: "taught/tree-1a2b3c4d": distinctName() and digits of the seed's hash
 };
 
 /// A rule file that includes the root files of the map; `body` follows.

@@ -11,6 +11,7 @@
 
 #include "mapping/facts/object_geometry.hpp"
 #include "rdf/vocabulary.hpp"
+#include "tasks/named_class.hpp"
 #include "tasks/search/search_field.hpp"
 #include "tasks/ways/class_cells.hpp"
 #include "tasks/ways/passable_grid.hpp"
@@ -70,7 +71,7 @@ std::string placeName(const LearnedPlace& place) {
   std::snprintf(distance.data(), distance.size(), "%gm", place.within_m);
   std::string within = distance.data();
   std::replace(within.begin(), within.end(), '.', '_');
-  return mapping::localName(place.class_iri) + "Within" + within + "Of" + mapping::localName(place.near_class);
+  return distinctName(place.class_iri) + "Within" + within + "Of" + distinctName(place.near_class);
 }
 
 std::string shortName(const std::string& iri) {
