@@ -6,7 +6,12 @@
 #include <sys/mount.h>
 #include <sys/stat.h>
 
+#include <atomic>
+#include <chrono>
 #include <fstream>
+#include <optional>
+#include <thread>
+#include <vector>
 
 #include "rdf/map_file_fixture.hpp"
 #include "rdf/store/quad_store.hpp"
@@ -83,6 +88,31 @@ TEST_F(MapReplacement, TakesNothingFromWhoWaitedToWrite) {
   EXPECT_NE(now, waiting);
   EXPECT_EQ(now->read().block("t", "late"), "kept");
   EXPECT_EQ(now->read().block("t", "n"), "1");
+}
+
+TEST_F(MapReplacement, IsToldToEachThreadThatWaitedToWrite) {
+  fs::rename(fresh(1), file_);
+  EXPECT_EQ(inChild([&] {
+              ::alarm(20);
+              const auto environment = open();
+              std::optional<WriteTransaction> first = environment->write();
+              std::atomic<int> told = 0;
+              std::vector<std::thread> waiting;
+              for (int i = 0; i < 3; ++i)
+                waiting.emplace_back([&] {
+                  try {
+                    environment->write();
+                  } catch (const MapReplaced&) {
+                    ++told;
+                  }
+                });
+              std::this_thread::sleep_for(std::chrono::milliseconds(200));
+              fs::rename(file_, folder_.path() / "moved.clx");
+              first.reset();
+              for (std::thread& thread : waiting) thread.join();
+              return told.load();
+            }),
+            3);
 }
 
 TEST_F(MapReplacement, NeverGivesAnOpenerTheLockFileOfTheOtherMap) {

@@ -32,8 +32,13 @@ void LmdbEnvironment::allowWriting() {
 
 void LmdbEnvironment::lockAgainstProcesses() {
   lockAgainstWriters(data_lock_, WriteLock::Writing, file_);
-  requireName();
-  requireOneLockFile();
+  try {
+    requireName();
+    requireOneLockFile();
+  } catch (...) {
+    ::flock(data_lock_, LOCK_UN);
+    throw;
+  }
 }
 
 /// A writer reuses the pages that no reader in its own lock file reads. Others would read what it writes over them, and
@@ -43,7 +48,6 @@ void LmdbEnvironment::requireOneLockFile() {
   const auto deadline = std::chrono::steady_clock::now() + kOtherNamesPatience;
   while (use_->hasOtherLockFiles()) {
     if (std::chrono::steady_clock::now() > deadline) {
-      ::flock(data_lock_, LOCK_UN);
       throw MapBusy(file_,
                     "another process has the map open under another name (it was moved, or has a hard link), or with a "
                     "lock file that was removed; nothing was written: end that process, or wait until it has ended, "
@@ -56,7 +60,6 @@ void LmdbEnvironment::requireOneLockFile() {
 /// The previous lock holder may have replaced the file.
 void LmdbEnvironment::requireName() {
   if (!has_name_ || isNamed(identityOf(data_lock_, file_), file_)) return;
-  ::flock(data_lock_, LOCK_UN);
   throw MapReplaced(file_);
 }
 
@@ -67,7 +70,12 @@ void LmdbEnvironment::enterWriting() {
   if (writer_active_ && writer_thread_ == std::this_thread::get_id())
     throw std::logic_error("a thread cannot write in two transactions of one map at once");
   writer_left_.wait(lock, [this] { return !writer_active_; });
-  lockAgainstProcesses();
+  try {
+    lockAgainstProcesses();
+  } catch (...) {
+    writer_left_.notify_one();  // the thread before woke this one only
+    throw;
+  }
   writer_active_ = true;
   writer_thread_ = std::this_thread::get_id();
 }
