@@ -2,22 +2,32 @@
 // A token in the cache of a commit tells whether the commit is still the newest.
 #include "mapping/newest_map.hpp"
 
+#include "rdf/file/map_replacement.hpp"
+
 namespace cluxel::mapping {
 
 namespace {
 constexpr const char* kCommitToken = "newest map";
 }
 
-bool NewestMap::isNewest() {
+bool NewestMap::isKept() {
   try {
     environment_ = rdf::Environment::open(file_, rdf::OpenMode::ReadOnly);
+    const rdf::QuadReader present(environment_->read());
+    return reader_ && present.kept(kCommitToken) == state_;
   } catch (...) {  // perhaps the map has another name now, under which it is not written while it is open here
     release();
     environment_.reset();
     throw;
   }
-  const rdf::QuadReader present(environment_->read());
-  return reader_ && present.kept(kCommitToken) == state_;
+}
+
+bool NewestMap::isNewest() {
+  try {
+    return isKept();
+  } catch (const rdf::LockFileOutdated&) {  // it is closed now, and LMDB finds the newest commit when it opens a map
+    return isKept();
+  }
 }
 
 const MapReader& NewestMap::reader() {

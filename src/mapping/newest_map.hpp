@@ -26,6 +26,7 @@ class NewestMap {
   void releaseIfOld();
 
  private:
+  bool isKept();
   bool isNewest();
 
   std::filesystem::path file_;

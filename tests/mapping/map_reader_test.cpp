@@ -15,6 +15,7 @@
 #include "mapping/small_campus.hpp"
 #include "perception/crf/label_model.hpp"
 #include "perception/pipeline.hpp"
+#include "rdf/lock_number.hpp"
 #include "sparql/query_engine.hpp"
 
 namespace cluxel::mapping {
@@ -251,6 +252,16 @@ TEST_F(MapReading, AMapThatWasMovedIsClosedWhenItIsAskedFor) {
   EXPECT_EQ(Environment::open(moved, OpenMode::ReadOnly)->file(), moved) << "it is open under its old name";
   std::filesystem::rename(moved, file);
   EXPECT_EQ(newest.reader().quads().size(), quads);
+}
+
+TEST_F(MapReading, AMapWhoseLockFileIsOutOfDateIsOpenedAgain) {
+  const std::filesystem::path file = folder->path() / "outdated.clx";
+  std::filesystem::copy_file(folder->path() / "map.clx", file);
+  NewestMap newest(file);
+  const std::uint64_t quads = newest.reader().quads().size();
+  ASSERT_TRUE(rdf::forgetNewestCommit(file, Environment::open(file, OpenMode::ReadOnly)->read().commitNumber()));
+  EXPECT_EQ(newest.reader().quads().size(), quads);
+  EXPECT_EQ(newest.quads().size(), quads);
 }
 
 TEST(DecimalText, IsShortAndHasAPoint) {

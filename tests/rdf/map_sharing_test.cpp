@@ -9,6 +9,7 @@
 #include "rdf/file/private_copy.hpp"
 #include "rdf/file/space/free_pages.hpp"
 #include "rdf/holes.hpp"
+#include "rdf/lock_number.hpp"
 #include "rdf/map_file_fixture.hpp"
 #include "rdf/store/quad_store.hpp"
 
@@ -97,6 +98,35 @@ TEST_F(SharedMap, AReaderThatMayNotWriteTheLockFileReadsOneCommitWhileTheOwnerWr
   ::waitpid(child, &status, 0);
   ASSERT_TRUE(WIFEXITED(status));
   EXPECT_EQ(WEXITSTATUS(status), 0);
+}
+
+TEST_F(SharedMap, AReaderThatMayNotWriteTheMapSeesTheCommitOfAWriterThatWasKilledAtItsEnd) {
+  {
+    const auto owner = create();
+    putGeneration(*owner, 0);
+    put(*owner, "last", "1");
+  }
+  ::chmod(file_.c_str(), 0444);
+  ::chmod(lockFile().c_str(), 0666);
+  EXPECT_EQ(inChild([&] {
+              becomeAnotherUser();
+              const auto early = open(OpenMode::ReadOnly);
+              const std::uint64_t newest = early->read().commitNumber();
+              if (!forgetNewestCommit(file_, newest)) return 1;
+              try {
+                early->read();
+                return 2;
+              } catch (const LockFileOutdated& error) {
+                if (std::string_view(error.what()).find("was killed") == std::string_view::npos) return 3;
+              }
+              const auto late = open(OpenMode::ReadOnly);
+              if (late->read().commitNumber() != newest || late->read().block("t", "last") != "1") return 4;
+              return late == open(OpenMode::ReadOnly) ? 0 : 5;
+            }),
+            0);
+  ::chmod(file_.c_str(), 0644);
+  put(*open(), "next", "2");
+  EXPECT_EQ(open()->read().block("t", "last"), "1");
 }
 
 TEST_F(SharedMap, AReaderThatMayNotWriteTheLockFileReadsWhileAWriterIsAtWork) {

@@ -144,6 +144,8 @@ std::shared_ptr<LmdbEnvironment> openAs(const fs::path& file, OpenMode mode, boo
   for (auto entry = table.entries.find(identity); entry != table.entries.end(); entry = table.entries.find(identity)) {
     if (auto open = entry->second.lock()) {
       if (mode != OpenMode::ReadOnly) open->allowWriting();
+      // Only who may write the map can put the number right.
+      if (!open->canWrite() && open->isOutdated()) return openCopy(file, descriptor);
       return open;
     }
     table.closed.wait(lock);  // another thread is closing it

@@ -34,8 +34,9 @@ class Environment : public std::enable_shared_from_this<Environment> {
   static std::shared_ptr<Environment> temporaryCopyOf(const std::filesystem::path& file);
   virtual ~Environment() = default;
 
-  /// Opens a snapshot of the newest commit, for use by one thread at a time. Throws Error (StoreUnavailable) when the
-  /// lock file does not know that commit, because the map was changed under another name. Cost: microseconds.
+  /// Opens a snapshot of the newest commit, for use by one thread at a time. Throws LockFileOutdated when the lock file
+  /// does not know that commit: a map that is closed by all and opened again is read at its newest one. Cost:
+  /// microseconds.
   virtual ReadTransaction read() const = 0;
   /// Starts the write transaction on the newest commit. Waits for another writer of this process. Throws MapBusy when
   /// another process writes for more than 1.5 s, or has the map open under another name as long.

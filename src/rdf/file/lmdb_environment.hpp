@@ -107,6 +107,8 @@ class LmdbEnvironment final : public Environment {
   /// Of an own commit what was compared of the commit before, else nothing.
   std::shared_ptr<CheckedParts> checkedPartsOf(std::size_t transaction_id) const;
   bool canWrite() const { return can_write_; }
+  /// Whether read() throws LockFileOutdated now. Cost: that of read().
+  bool isOutdated() const;
   void check(int code, std::string_view doing) const { checkLmdb(code, file_, doing); }
   void enterWriting();
   void leaveWriting();
@@ -118,7 +120,7 @@ class LmdbEnvironment final : public Environment {
   void requireName();
   void requireOneLockFile();
   void cutUnusedEnd() const;
-  void requireNewest(MDB_txn* reading) const;
+  bool seesNewest(MDB_txn* reading) const;
   bool withoutWriters(const std::function<void()>& work) const;
   void createTables(ReadTransaction::Impl& transaction);
   void verifyForWriting(std::size_t commit);

@@ -58,6 +58,13 @@ MapReplaced::MapReplaced(const fs::path& map)
                                              ": was replaced or removed since it was opened (compacted, or "
                                              "replaced by a build); nothing was written: run again") {}
 
+LockFileOutdated::LockFileOutdated(const fs::path& map)
+    : Error(ErrorKind::StoreUnavailable,
+            map.string() + ": its lock file " + lockFileOf(map).string() +
+                " is out of date: the map was changed under another name (it was moved, or has a hard link), or a "
+                "writer was killed at the end of its commit; end the processes that have the map open, and run again") {
+}
+
 WriteTransaction writeMap(const fs::path& map, std::chrono::milliseconds patience) {
   const auto deadline = std::chrono::steady_clock::now() + patience;
   constexpr int kMaxReplacements = 100;

@@ -24,6 +24,13 @@ class MapReplaced : public Error {
   explicit MapReplaced(const std::filesystem::path& map);
 };
 
+/// The lock file does not know the newest commit of a map that is open. That ends when all who have the map open by
+/// this name close it.
+class LockFileOutdated : public Error {
+ public:
+  explicit LockFileOutdated(const std::filesystem::path& map);
+};
+
 /// A write transaction on the file that is now called `map`; reopens it when it was replaced during the wait. Throws
 /// MapBusy when another process still holds the lock after `patience` (at least 1.5 s).
 WriteTransaction writeMap(const std::filesystem::path& map, std::chrono::milliseconds patience = {});

@@ -8,6 +8,7 @@
 #include "rdf/file/check/map_structure.hpp"
 #include "rdf/file/lmdb_environment.hpp"
 #include "rdf/file/map_check.hpp"
+#include "rdf/file/map_replacement.hpp"
 #include "rdf/file/opening/newest_commit.hpp"
 #include "rdf/store/indexes/changed_ranges.hpp"
 #include "rdf/store/indexes/index_directories.hpp"
@@ -104,7 +105,7 @@ ReadTransaction LmdbEnvironment::read() const {
   // The shared state is protected by a mutex.
   impl->environment = std::static_pointer_cast<LmdbEnvironment>(const_cast<LmdbEnvironment*>(this)->shared_from_this());
   check(mdb_txn_begin(handle(), nullptr, MDB_RDONLY, &impl->txn), "read the map");
-  requireNewest(impl->txn);
+  if (!seesNewest(impl->txn)) throw LockFileOutdated(file_);
   return ReadTransaction(std::move(impl));
 }
 
@@ -119,7 +120,7 @@ WriteTransaction LmdbEnvironment::write() {
   const std::size_t base = mdb_txn_id(impl->txn) - 1;
   if (base != newestCommit(handle())) {  // a commit on an older one would undo the newest
     impl->end();
-    failForeignLockFile(file_);
+    throw LockFileOutdated(file_);
   }
   MDB_stat terms;
   if (mdb_stat(impl->txn, table(Table::Terms), &terms) == MDB_SUCCESS) impl->committed_terms = terms.ms_entries;

@@ -109,10 +109,17 @@ bool LmdbEnvironment::withoutWriters(const std::function<void()>& work) const {
 }
 
 /// LMDB takes the number of the newest commit from the lock file.
-void LmdbEnvironment::requireNewest(MDB_txn* reading) const {
-  if (!use_ || mdb_txn_id(reading) == newestCommit(handle())) return;
+bool LmdbEnvironment::seesNewest(MDB_txn* reading) const {
+  if (!use_ || mdb_txn_id(reading) == newestCommit(handle())) return true;
   const auto without_writers = [this](const auto& work) { return withoutWriters(work); };
-  if (!reachesNewest(reading, file_, *use_, without_writers)) failForeignLockFile(file_);
+  return reachesNewest(reading, file_, *use_, without_writers);
+}
+
+bool LmdbEnvironment::isOutdated() const {
+  MDB_txn* raw = nullptr;
+  check(mdb_txn_begin(handle(), nullptr, MDB_RDONLY, &raw), "read the map");
+  const TxnHandle reading(raw);
+  return !seesNewest(raw);
 }
 
 }  // namespace cluxel::rdf
