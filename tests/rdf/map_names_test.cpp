@@ -3,13 +3,16 @@
 #include <fcntl.h>
 #include <lmdb.h>
 
+#include <chrono>
 #include <fstream>
 #include <functional>
 #include <iterator>
 #include <memory>
+#include <thread>
 
 #include "rdf/file/lock_file.hpp"
 #include "rdf/file/map_replacement.hpp"
+#include "rdf/lock_number.hpp"
 #include "rdf/map_file_fixture.hpp"
 
 namespace cluxel::rdf {
@@ -169,6 +172,50 @@ TEST_F(MapNames, AMapThatIsOpenUnderAHardLinkIsNotWritten) {
   putIn(file_, "one", "1");
   EXPECT_EQ(blockOf(link, "one"), "1");
   putIn(link, "two", "2");
+  EXPECT_EQ(blockOf(file_, "one") + blockOf(file_, "two"), "12");
+}
+
+/// A lock file is made with the number of the commit before, while the first writer is at work.
+TEST_F(MapNames, AWriterUnderAHardLinkWaitsForAnotherAndBuildsOnItsCommit) {
+  create().reset();
+  putIn(file_, "one", "0");
+  const fs::path link = named("link.clx");
+  fs::create_hard_link(file_, link);
+  OtherProcess first([&](const Pause& pause) {
+    WriteTransaction transaction = writeMap(file_);
+    transaction.putBlock("t", "one", "1");
+    pause();
+    transaction.commit();
+    return 0;
+  });
+  std::thread ending([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    EXPECT_EQ(first.end(), 0);
+  });
+  EXPECT_NO_THROW(putIn(link, "two", "2"));
+  ending.join();
+  EXPECT_EQ(blockOf(file_, "one") + blockOf(file_, "two"), "12");
+}
+
+/// The number stays wrong as long as one process has the map open.
+TEST_F(MapNames, AWriterWaitsUntilALockFileThatIsOutOfDateIsClosed) {
+  create().reset();
+  putIn(file_, "one", "0");
+  putIn(file_, "one", "1");
+  const std::uint64_t newest = open(OpenMode::ReadOnly)->read().commitNumber();
+  OtherProcess holder([&](const Pause& pause) {
+    const auto environment = open(OpenMode::ReadOnly);
+    pause();
+    return 0;
+  });
+  ASSERT_TRUE(forgetNewestCommit(file_, newest));
+  EXPECT_THAT(refusalOfWriting(file_), HasSubstr("out of date"));
+  std::thread ending([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    EXPECT_EQ(holder.end(), 0);
+  });
+  EXPECT_NO_THROW(putIn(file_, "two", "2"));
+  ending.join();
   EXPECT_EQ(blockOf(file_, "one") + blockOf(file_, "two"), "12");
 }
 

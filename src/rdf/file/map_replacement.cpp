@@ -6,10 +6,12 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <optional>
+#include <thread>
 
 #include "base/file_bytes.hpp"
 #include "rdf/file/file_guards.hpp"
@@ -20,6 +22,8 @@ namespace cluxel::rdf {
 namespace fs = std::filesystem;
 
 namespace {
+
+constexpr std::chrono::milliseconds kOutdatedPatience{1500}, kOutdatedPause{10};
 
 /// Prevents others from opening the map, if it exists, during the rename.
 class HeldName {
@@ -66,15 +70,19 @@ LockFileOutdated::LockFileOutdated(const fs::path& map)
 }
 
 WriteTransaction writeMap(const fs::path& map, std::chrono::milliseconds patience) {
-  const auto deadline = std::chrono::steady_clock::now() + patience;
+  const auto begin = std::chrono::steady_clock::now();
   constexpr int kMaxReplacements = 100;
   for (int replacements = 0;;) {
+    const auto waited = [&begin] { return std::chrono::steady_clock::now() - begin; };
     try {
       return Environment::open(map, OpenMode::ReadWrite)->write();
     } catch (const MapReplaced&) {
       if (++replacements == kMaxReplacements) throw;
+    } catch (const LockFileOutdated&) {  // the map is closed now; others may have to close it, too
+      if (waited() >= std::max(patience, kOutdatedPatience)) throw;
+      std::this_thread::sleep_for(kOutdatedPause);
     } catch (const MapBusy&) {
-      if (std::chrono::steady_clock::now() >= deadline) throw;
+      if (waited() >= patience) throw;
     }
   }
 }

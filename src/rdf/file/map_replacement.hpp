@@ -31,8 +31,9 @@ class LockFileOutdated : public Error {
   explicit LockFileOutdated(const std::filesystem::path& map);
 };
 
-/// A write transaction on the file that is now called `map`; reopens it when it was replaced during the wait. Throws
-/// MapBusy when another process still holds the lock after `patience` (at least 1.5 s).
+/// A write transaction on the file that is now called `map`; reopens it when it was replaced, or changed under another
+/// name, during the wait. Throws MapBusy when another process still holds the lock after `patience` (at least 1.5 s),
+/// and LockFileOutdated when other processes keep the map open as long with a lock file that is out of date.
 WriteTransaction writeMap(const std::filesystem::path& map, std::chrono::milliseconds patience = {});
 
 /// Renames `fresh`, which has no writer, to `map`. If `map` exists, the caller must hold a write transaction on it.

@@ -5,11 +5,11 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <optional>
 #include <utility>
 
 #include "rdf/file/file_guards.hpp"
 #include "rdf/file/lock_file.hpp"
+#include "rdf/file/map_replacement.hpp"
 #include "rdf/file/opening/newest_commit.hpp"
 #include "rdf/file/table.hpp"
 
@@ -72,20 +72,23 @@ OpenedLmdb openWithoutLockFile(const LmdbRequest& request, const LockFile& lock)
   return opened;
 }
 
-/// None when the lock file beside the map is not its own.
-std::optional<OpenedLmdb> openWithLockFile(const LmdbRequest& request) {
+OpenedLmdb openWithLockFile(const LmdbRequest& request) {
   LockFile lock = prepareLockFile(request.file, request.descriptor, request.can_write);
   if (lock.state != LockFileState::Usable) return openWithoutLockFile(request, lock);
   OpenedLmdb opened;
   opened.can_write = request.can_write;
   opened.use = std::make_unique<JointUse>(request.descriptor, std::move(lock.descriptor));
-  if (opened.use->isLockFileOfOthers()) return std::nullopt;
+  if (opened.use->isLockFileOfOthers()) return withOutcome(LmdbOutcome::ForeignLockFile);
   if (request.mode == OpenMode::ReadOnly && isWrittenElsewhere(request, *opened.use))
     return withOutcome(LmdbOutcome::NeedsCopy);
   opened.handle = openLmdb(request.file, request.file_size, request.can_write ? request.flags : MDB_RDONLY);
   if (!isOpen(opened.handle.get(), request)) return withOutcome(LmdbOutcome::Renamed);
-  if (!hasRightNumber(request, opened)) return std::nullopt;
+  if (!hasRightNumber(request, opened)) return withOutcome(LmdbOutcome::OutdatedLockFile);
   return opened;
+}
+
+bool hasOwnLockFile(const OpenedLmdb& opened) {
+  return opened.outcome != LmdbOutcome::ForeignLockFile && opened.outcome != LmdbOutcome::OutdatedLockFile;
 }
 
 /// False when another process has this map, too, open with it, or the folder may not be changed.
@@ -94,6 +97,14 @@ bool setLockFileAside(const LmdbRequest& request) {
   if (lock.state != LockFileState::Usable) return false;
   const JointUse use(request.descriptor, std::move(lock.descriptor));
   return !use.hasCompany() && (::unlink(lockFileOf(request.file).c_str()) == 0 || errno == ENOENT);
+}
+
+[[noreturn]] void failOtherLockFile(const LmdbRequest& request, LmdbOutcome outcome) {
+  if (outcome == LmdbOutcome::OutdatedLockFile) throw LockFileOutdated(request.file);
+  throw Error(ErrorKind::StoreUnavailable,
+              request.file.string() + ": its lock file " + lockFileOf(request.file).string() +
+                  " is in use for another file that had this name; end the processes that have either open, and run "
+                  "again");
 }
 
 }  // namespace
@@ -116,19 +127,22 @@ EnvHandle openLmdb(const fs::path& file, std::uint64_t file_size, unsigned flags
 
 OpenedLmdb openLmdbByName(const LmdbRequest& request) {
   const FileIdentity identity = identityOf(request.descriptor, request.file);
+  OpenedLmdb opened;
   {
     const NameLock lock(request.descriptor, NameLock::Kind::Opening);  // LMDB opens the file again by its name
     if (!isNamed(identity, request.file)) return withOutcome(LmdbOutcome::Renamed);
-    if (auto opened = openWithLockFile(request)) return std::move(*opened);
+    opened = openWithLockFile(request);
+    if (hasOwnLockFile(opened)) return opened;
   }
   if (request.can_write) {
     const NameLock lock(request.descriptor, NameLock::Kind::Replacing);
     if (!isNamed(identity, request.file)) return withOutcome(LmdbOutcome::Renamed);
-    if (auto opened = openWithLockFile(request)) return std::move(*opened);  // another process was faster
-    if (setLockFileAside(request))
-      if (auto opened = openWithLockFile(request)) return std::move(*opened);
+    opened = openWithLockFile(request);
+    if (hasOwnLockFile(opened)) return opened;  // another process was faster
+    if (setLockFileAside(request)) opened = openWithLockFile(request);
+    if (hasOwnLockFile(opened)) return opened;
   }
-  if (request.mode != OpenMode::ReadOnly) failForeignLockFile(request.file);
+  if (request.mode != OpenMode::ReadOnly) failOtherLockFile(request, opened.outcome);
   return withOutcome(LmdbOutcome::NeedsCopy);
 }
 

@@ -24,8 +24,11 @@ struct LmdbRequest {
 
 enum class LmdbOutcome : std::uint8_t {
   Opened,
-  Renamed,   ///< the name refers to another file by now
-  NeedsCopy  ///< this process cannot register as a reader, so it has to read a private copy
+  Renamed,    ///< the name refers to another file by now
+  NeedsCopy,  ///< this process cannot register as a reader, so it has to read a private copy
+  // Only while the map is being opened:
+  ForeignLockFile,  ///< the lock file serves another file that had the name
+  OutdatedLockFile  ///< the lock file does not know the newest commit
 };
 
 struct OpenedLmdb {
@@ -40,8 +43,9 @@ struct OpenedLmdb {
 EnvHandle openLmdb(const std::filesystem::path& file, std::uint64_t file_size, unsigned flags);
 
 /// Opens the file while its name refers to it. A lock file that still serves another file, which had the name before,
-/// is set aside: its users keep it. Throws Error (StoreUnavailable) where that is not possible and the map is to be
-/// written; MapBusy when another process writes all the time.
+/// is set aside: its users keep it. Where that is not possible and the map is to be written, throws Error
+/// (StoreUnavailable), or LockFileOutdated when the number of the lock file is wrong; MapBusy when another process
+/// writes all the time.
 OpenedLmdb openLmdbByName(const LmdbRequest& request);
 
 }  // namespace cluxel::rdf

@@ -5,8 +5,6 @@
 #include <chrono>
 #include <thread>
 
-#include "cluxel/error.hpp"
-#include "rdf/file/lock_file.hpp"
 #include "rdf/file/map_replacement.hpp"
 
 namespace cluxel::rdf {
@@ -56,13 +54,6 @@ bool reachesNewest(MDB_txn* reading, const std::filesystem::path& file, const Jo
     std::this_thread::sleep_for(kPause);
   }
   return true;
-}
-
-void failForeignLockFile(const std::filesystem::path& map) {
-  throw Error(ErrorKind::StoreUnavailable,
-              map.string() + ": its lock file " + lockFileOf(map).string() +
-                  " is in use for another file that had this name, or the map was changed under another name; end the "
-                  "processes that have either open, and run again");
 }
 
 }  // namespace cluxel::rdf

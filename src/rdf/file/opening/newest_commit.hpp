@@ -22,7 +22,4 @@ using WithoutWriters = std::function<bool(const std::function<void()>&)>;
 bool reachesNewest(MDB_txn* reading, const std::filesystem::path& file, const JointUse& use,
                    const WithoutWriters& without_writers);
 
-/// Throws Error (StoreUnavailable): the lock file belongs to another file, or to another name of the map.
-[[noreturn]] void failForeignLockFile(const std::filesystem::path& map);
-
 }  // namespace cluxel::rdf
