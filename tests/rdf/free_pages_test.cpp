@@ -10,6 +10,7 @@
 #include "rdf/file/map_check.hpp"
 #include "rdf/file/space/layer_sizes.hpp"
 #include "rdf/holes.hpp"
+#include "rdf/lock_number.hpp"
 #include "rdf/map_file_fixture.hpp"
 
 namespace cluxel::rdf {
@@ -80,6 +81,22 @@ TEST_F(FreePages, ThatASnapshotReadsStay) {
   }
   EXPECT_GT(released, 1'000'000U);
   snapshots.clear();
+  EXPECT_TRUE(checkMap(file_).sound());
+}
+
+/// Pages that were free in the commit before.
+TEST_F(FreePages, ThatTheCommitOfAKilledWriterUsesStay) {
+  const std::string bytes(3'000'000, 'b');
+  {
+    const auto environment = create();
+    put(*environment, "long", std::string(4'000'000, 'a'));
+    put(*environment, "long", "c");
+    put(*environment, "short", "d");  // LMDB uses free pages from the second commit after on
+    put(*environment, "long", bytes);
+    ASSERT_TRUE(forgetNewestCommit(file_, environment->read().commitNumber()));
+    EXPECT_EQ(releaseFreePages(*environment), 0U);
+  }
+  EXPECT_EQ(open()->read().block("t", "long"), bytes);
   EXPECT_TRUE(checkMap(file_).sound());
 }
 

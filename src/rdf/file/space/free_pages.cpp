@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "rdf/file/lmdb_environment.hpp"
+#include "rdf/file/opening/newest_commit.hpp"
 #include "rdf/file/space/table_entries.hpp"
 
 namespace cluxel::rdf {
@@ -97,6 +98,9 @@ std::uint64_t releaseFreePages(Environment& environment) {
   const WritersTurn turn(lmdb);
   if (lmdb.hasOtherNames()) return 0;  // whoever reads by another name is in another table of readers
   const ReadTransaction newest = lmdb.read();
+  // A writer that was killed at the end of its commit leaves its number to the next writer. That commit may use what
+  // was free before.
+  if (newest.commitNumber() != newestCommit(lmdb.handle())) return 0;
   MDB_stat stat;
   newest.impl().check(mdb_stat(newest.impl().live(), lmdb.mainTable(), &stat), "read the map");
   const std::vector<std::uint64_t> pages = freePagesUpTo(oldestRead(lmdb), newest.impl());
