@@ -219,6 +219,27 @@ TEST_F(MapNames, AWriterWaitsUntilALockFileThatIsOutOfDateIsClosed) {
   EXPECT_EQ(blockOf(file_, "one") + blockOf(file_, "two"), "12");
 }
 
+/// As Python's multiprocessing does: the child has a copy of what the parent has open.
+TEST_F(MapNames, AChildThatClosesAMapLeavesItOpenInItsParent) {
+  create().reset();
+  putIn(file_, "one", "0");
+  const fs::path link = named("link.clx");
+  fs::create_hard_link(file_, link);
+  OtherProcess holder([&](const Pause& pause) {
+    auto environment = open(OpenMode::ReadOnly);
+    const int result = inChild([&] {
+      environment.reset();
+      return 0;
+    });
+    pause();
+    return result;
+  });
+  EXPECT_THAT(refusalOfWriting(link), HasSubstr("hard link"));
+  EXPECT_EQ(holder.end(), 0);
+  putIn(link, "one", "1");
+  EXPECT_EQ(blockOf(file_, "one"), "1");
+}
+
 TEST_F(MapNames, AReaderUnderAHardLinkMissesNoCommitOfAWriterThatHadBegun) {
   create().reset();
   putIn(file_, "one", "0");

@@ -5,6 +5,7 @@
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <sys/vfs.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -66,7 +67,7 @@ bool isMarkedBeside(int descriptor, off_t mark) {
 
 }  // namespace
 
-JointUse::JointUse(int map, Descriptor lock_file) : map_(map), lock_file_(std::move(lock_file)) {
+JointUse::JointUse(int map, Descriptor lock_file) : map_(map), lock_file_(std::move(lock_file)), process_(::getpid()) {
   const off_t map_mark = markOf(lock_file_.get()), lock_mark = markOf(map_);
   if (map_mark == 0 || lock_mark == 0) return;
   if (change(map_, map_mark, F_RDLCK)) map_mark_ = map_mark;
@@ -74,7 +75,8 @@ JointUse::JointUse(int map, Descriptor lock_file) : map_(map), lock_file_(std::m
 }
 
 JointUse::~JointUse() {
-  if (map_mark_ != 0) change(map_, map_mark_, F_UNLCK);
+  // A child process shares the marks of its parent: they end with the last descriptor, or here.
+  if (map_mark_ != 0 && process_ == ::getpid()) change(map_, map_mark_, F_UNLCK);
 }
 
 bool JointUse::isLockFileOfOthers() const {

@@ -32,6 +32,7 @@ class JointUse {
  private:
   int map_;
   Descriptor lock_file_;
+  pid_t process_;                       ///< that made the marks
   off_t map_mark_ = 0, lock_mark_ = 0;  ///< the byte in the map, and that in the lock file; 0: there is none
 };
 
