@@ -49,9 +49,9 @@ void LmdbEnvironment::requireOneLockFile() {
   while (use_->hasOtherLockFiles()) {
     if (std::chrono::steady_clock::now() > deadline) {
       throw MapBusy(file_,
-                    "another process has the map open under another name (it was moved, or has a hard link), or with a "
-                    "lock file that was removed; nothing was written: end that process, or wait until it has ended, "
-                    "and run again");
+                    "another process has the map open under another name (it was moved, or has a hard link), in a "
+                    "container that it is mounted into as a single file, or with a lock file that was removed; nothing "
+                    "was written: end that process, or wait until it has ended, and run again");
     }
     std::this_thread::sleep_for(kOtherNamesPause);
   }
