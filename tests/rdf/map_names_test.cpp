@@ -10,6 +10,7 @@
 #include <memory>
 #include <thread>
 
+#include "rdf/file/file_guards.hpp"
 #include "rdf/file/lock_file.hpp"
 #include "rdf/file/map_replacement.hpp"
 #include "rdf/lock_number.hpp"
@@ -19,6 +20,7 @@ namespace cluxel::rdf {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::AllOf;
 using testing::HasSubstr;
 
 using Pause = std::function<void()>;
@@ -167,7 +169,7 @@ TEST_F(MapNames, AMapThatIsOpenUnderAHardLinkIsNotWritten) {
   fs::create_hard_link(file_, link);
   OtherProcess holder(holding(link));
   EXPECT_EQ(blockOf(file_, "one"), "0");
-  EXPECT_THAT(refusalOfWriting(file_), HasSubstr("hard link"));
+  EXPECT_THAT(refusalOfWriting(file_), AllOf(HasSubstr("hard link"), HasSubstr("container")));
   EXPECT_EQ(holder.end(), 0);
   putIn(file_, "one", "1");
   EXPECT_EQ(blockOf(link, "one"), "1");
@@ -238,6 +240,18 @@ TEST_F(MapNames, AChildThatClosesAMapLeavesItOpenInItsParent) {
   EXPECT_EQ(holder.end(), 0);
   putIn(link, "one", "1");
   EXPECT_EQ(blockOf(file_, "one"), "1");
+}
+
+/// A reader who copies the map writes nothing to it.
+TEST_F(MapNames, WhoMayOnlyReadRunsBesideOthersWhoReadAndNotBesideAWriter) {
+  create().reset();
+  const Descriptor own(::open(file_.c_str(), O_RDONLY | O_CLOEXEC)), other(::open(file_.c_str(), O_RDWR | O_CLOEXEC));
+  int runs = 0;
+  ASSERT_TRUE(tryLockAgainstWriters(other.get(), WriteLock::Copying, file_));
+  EXPECT_TRUE(runWithoutWriters(own.get(), file_, [&] { ++runs; }));
+  ASSERT_TRUE(tryLockAgainstWriters(other.get(), WriteLock::Writing, file_));
+  EXPECT_FALSE(runWithoutWriters(own.get(), file_, [&] { ++runs; }));
+  EXPECT_EQ(runs, 1);
 }
 
 TEST_F(MapNames, AReaderUnderAHardLinkMissesNoCommitOfAWriterThatHadBegun) {

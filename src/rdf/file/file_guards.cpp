@@ -101,7 +101,9 @@ void lockAgainstWriters(int descriptor, WriteLock kind, const fs::path& file) {
 }
 
 bool runWithoutWriters(int descriptor, const fs::path& file, const std::function<void()>& work) {
-  if (!tryLockAgainstWriters(descriptor, WriteLock::Writing, file)) return false;
+  // NFS gives the lock of a writer only to who may write the file.
+  const bool can_write = (::fcntl(descriptor, F_GETFL) & O_ACCMODE) != O_RDONLY;
+  if (!tryLockAgainstWriters(descriptor, can_write ? WriteLock::Writing : WriteLock::Copying, file)) return false;
   try {
     work();
   } catch (...) {

@@ -91,7 +91,8 @@ void lockAgainstWriters(int descriptor, WriteLock kind, const std::filesystem::p
 /// Does not wait: false when another process holds the lock.
 bool tryLockAgainstWriters(int descriptor, WriteLock kind, const std::filesystem::path& file);
 
-/// Runs `work` while no process writes or copies the map; false, without running it, when one does.
+/// Runs `work` while no process writes the map; false, without running it, when one does. A descriptor that can be
+/// written excludes those who copy the map, too.
 bool runWithoutWriters(int descriptor, const std::filesystem::path& file, const std::function<void()>& work);
 
 /// Opening a named pipe waits for a writer, which may never come. Throws Error (StoreUnavailable) for what is neither a
