@@ -2,6 +2,7 @@
 // Tests of replacing a map while other processes read it, open it or wait to write; of closed streams and full disks.
 #include "rdf/file/map_replacement.hpp"
 
+#include <fcntl.h>
 #include <sched.h>
 #include <sys/mount.h>
 #include <sys/stat.h>
@@ -13,6 +14,8 @@
 #include <thread>
 #include <vector>
 
+#include "rdf/file/file_guards.hpp"
+#include "rdf/file/opening/joint_use.hpp"
 #include "rdf/map_file_fixture.hpp"
 #include "rdf/store/quad_store.hpp"
 
@@ -185,6 +188,8 @@ TEST_F(MapFile, HasALockFileWithoutHoles) {
   EXPECT_GE(status.st_blocks * 512, status.st_size);
 }
 
+constexpr int kNoDisk = 77;
+
 /// Fills a disk completely.
 void fill(const fs::path& file) {
   std::ofstream out(file, std::ios::binary);
@@ -224,7 +229,6 @@ int useAFullDisk(const fs::path& disk) {
 }
 
 TEST_F(MapFile, OnAFullDiskIsReadAndRefusesToBeWritten) {
-  constexpr int kNoDisk = 77;
   const int result = inChild([&] {
     const fs::path disk = folder_.path() / "disk";
     fs::create_directory(disk);
@@ -232,6 +236,33 @@ TEST_F(MapFile, OnAFullDiskIsReadAndRefusesToBeWritten) {
         ::mount("tmpfs", disk.c_str(), "tmpfs", 0, "size=512k") != 0)
       return kNoDisk;
     return useAFullDisk(disk);
+  });
+  if (result == kNoDisk) GTEST_SKIP() << "a disk of one's own cannot be mounted here";
+  EXPECT_EQ(result, 0);
+}
+
+/// File systems number their files alike. Returns 0, or the number of the failed check.
+int useTwoLockFilesOfOneNumber(const fs::path& folder) {
+  for (const char* disk : {"a", "b"}) {
+    fs::create_directory(folder / disk);
+    if (::mount("tmpfs", (folder / disk).c_str(), "tmpfs", 0, "size=64k") != 0) return kNoDisk;
+    std::ofstream(folder / disk / "first") << "map";
+    std::ofstream(folder / disk / "second") << "lock file";
+  }
+  const auto opened = [&](const char* file) { return Descriptor(::open((folder / file).c_str(), O_RDWR | O_CLOEXEC)); };
+  const Descriptor map = opened("a/first"), again = opened("a/first");
+  Descriptor lock = opened("a/second"), same = opened("a/second"), other = opened("b/second");
+  if (identityOf(lock.get(), "a").inode != identityOf(other.get(), "b").inode) return kNoDisk;
+  const JointUse use(map.get(), std::move(lock));
+  if (const JointUse with_same(again.get(), std::move(same)); use.hasOtherLockFiles()) return 1;
+  const JointUse with_other(again.get(), std::move(other));
+  return use.hasOtherLockFiles() ? 0 : 2;
+}
+
+TEST_F(MapFile, TellsLockFilesOfTwoFileSystemsApart) {
+  const int result = inChild([&] {
+    if (::unshare(CLONE_NEWNS) != 0 || ::mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) != 0) return kNoDisk;
+    return useTwoLockFilesOfOneNumber(folder_.path());
   });
   if (result == kNoDisk) GTEST_SKIP() << "a disk of one's own cannot be mounted here";
   EXPECT_EQ(result, 0);

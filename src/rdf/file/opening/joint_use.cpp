@@ -28,11 +28,13 @@ bool keepsLocksApart(int descriptor) {
   return std::find(kNetwork.begin(), kNetwork.end(), static_cast<std::uint32_t>(system.f_type)) == kNetwork.end();
 }
 
-/// 0 when the file cannot be examined.
+/// The files of one file system have different marks. 0 when the file cannot be examined.
 off_t markOf(int descriptor) {
   struct stat status {};
   if (!keepsLocksApart(descriptor) || ::fstat(descriptor, &status) != 0) return 0;
-  return kFirstMark + static_cast<off_t>(status.st_ino % static_cast<std::uint64_t>(kMarks));
+  constexpr std::uint64_t kSpread = 0x9E3779B97F4A7C15;  // file systems number their files alike
+  const std::uint64_t number = std::uint64_t{status.st_dev} * kSpread + std::uint64_t{status.st_ino};
+  return kFirstMark + static_cast<off_t>(number % static_cast<std::uint64_t>(kMarks));
 }
 
 struct flock bytesAt(off_t first, off_t count, short kind) {
