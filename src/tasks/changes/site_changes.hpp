@@ -75,8 +75,8 @@ std::vector<PartStates> statesOfParts(const SiteChanges& changes);
 /// Seconds since 1970 of "2023-11-15T22:13:20Z", "2023-11-15" or a number of seconds. Throws Error (InvalidArgument).
 double timeNamed(const std::string& text);
 
-/// Numbers of objects that came or went by their states, though no change names them or lies around their middle: states
-/// follow from all places of an object together, a change from places that are each seen well.
+/// Numbers of objects that came or went by their states, though no change names them or lies around their middle:
+/// states follow from all places of an object together, a change from places that are each seen well.
 std::vector<std::uint32_t> objectsThatDifferByStates(const SiteChanges& changes);
 
 std::string changesJson(const mapping::MapReader& map, const SiteChanges& changes);
