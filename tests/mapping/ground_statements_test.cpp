@@ -2,11 +2,11 @@
 // The ground is one object over all of the map: what was stated of a thing, or of a region, does not change it.
 #include <gtest/gtest.h>
 
-#include "mapping/build/operator_statements.hpp"
 #include "mapping/change/map_change.hpp"
 #include "mapping/change/map_update.hpp"
 #include "mapping/change/statement_change.hpp"
 #include "mapping/small_campus.hpp"
+#include "mapping/stated_builds.hpp"
 #include "rdf/map_iris.hpp"
 #include "rules/objects/finished_objects.hpp"
 
@@ -40,11 +40,7 @@ class GroundStatements : public testing::Test {
 
   /// The map of the same scans, built from scratch with the statements that the map has.
   std::string fromScratch(std::size_t scan_count) const {
-    BuildParams params;
-    params.statements = operatorStatements(MapReader(map()).quads());
-    const ScratchFolder other;
-    buildMap(scans(0, scan_count), *inputs, other.path() / "map.clx", params, silence());
-    return canonicalText(other.path() / "map.clx");
+    return builtWithStatementsOf(map(), scans(0, scan_count), *inputs);
   }
   std::vector<KnownStatement> known() const { return knownStatements(MapReader(map()).quads()); }
   std::size_t groundCount() const {

@@ -8,12 +8,12 @@
 
 #include "base/file_bytes.hpp"
 #include "cluxel/error.hpp"
-#include "mapping/build/operator_statements.hpp"
 #include "mapping/change/map_change.hpp"
 #include "mapping/change/map_update.hpp"
 #include "mapping/change/rdf_loading.hpp"
 #include "mapping/change/statement_change.hpp"
 #include "mapping/small_campus.hpp"
+#include "mapping/stated_builds.hpp"
 #include "mapping/statements/stated_values.hpp"
 #include "rdf/file/map_replacement.hpp"
 #include "rdf/map_iris.hpp"
@@ -30,12 +30,6 @@ const std::string kInOperator = "GRAPH <" + std::string(rdf::vocabulary::kGraphO
 const std::string kInHistory = "GRAPH <" + std::string(rdf::vocabulary::kGraphHistory) + "> ";
 const std::string kLabel = "<" + rdf::vocabulary::rdfs("label") + ">";
 const std::string kUnder = "<http://example.org/under>";
-
-class Notes : public ProgressSink {
- public:
-  void note(std::string_view text) override { all.append(text).append("\n"); }
-  std::string all;
-};
 
 class StatedQuads : public testing::Test {
  protected:
@@ -76,14 +70,10 @@ class StatedQuads : public testing::Test {
   }
   /// The map of the same scans, built from scratch with the statements that the map has.
   std::string fromScratch(std::size_t scan_count) const {
-    BuildParams params;
-    params.statements = operatorStatements(MapReader(map()).quads());
-    const ScratchFolder other;
-    buildMap(scans(0, scan_count), *inputs, other.path() / "map.clx", params, silence());
-    return canonicalText(other.path() / "map.clx");
+    return builtWithStatementsOf(map(), scans(0, scan_count), *inputs);
   }
   std::string update(const std::string& text) const {
-    Notes notes;
+    StatementNotes notes;
     updateMap(map(), text, {}, notes);
     return notes.all;
   }
@@ -149,7 +139,7 @@ TEST_F(StatedQuads, ThatStandUnderTheNameOfAnObjectAreNotedWhenTheyAreStatedAgai
               HasSubstr(remedy));
   const fs::path file = folder.path() / "later.nt";
   writeFile(file, quad + ".\n");
-  Notes notes;
+  StatementNotes notes;
   EXPECT_EQ(loadRdfFiles(map(), {file}, {}, notes).added, 0U);
   EXPECT_THAT(notes.all, HasSubstr(remedy));
   EXPECT_THAT(update("DELETE DATA { " + kInOperator + "{ " + quad + "} }"), Not(HasSubstr("stands already")));

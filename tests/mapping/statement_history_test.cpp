@@ -14,6 +14,7 @@
 #include "mapping/change/map_update.hpp"
 #include "mapping/change/statement_change.hpp"
 #include "mapping/small_campus.hpp"
+#include "mapping/stated_builds.hpp"
 #include "rdf/map_iris.hpp"
 
 namespace cluxel::mapping {
@@ -22,12 +23,6 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 using testing::UnorderedElementsAre;
-
-class Notes : public ProgressSink {
- public:
-  void note(std::string_view text) override { all.append(text).append("\n"); }
-  std::string all;
-};
 
 class StatementHistory : public testing::Test {
  protected:
@@ -66,7 +61,7 @@ class StatementHistory : public testing::Test {
     return ids;
   }
   /// Merges both ways, and expects the same map of both.
-  fs::path merged(const fs::path& a, const fs::path& b, Notes& notes) const {
+  fs::path merged(const fs::path& a, const fs::path& b, StatementNotes& notes) const {
     mergeMaps({{b}, {a}}, map("other"), {.change = {}, .use = std::nullopt, .force = true}, silence());
     mergeMaps({{a}, {b}}, map("merged"), {.change = {}, .use = std::nullopt, .force = true}, notes);
     EXPECT_TRUE(canonicalText(map("merged")) == canonicalText(map("other"))) << "the order of the maps counts";
@@ -88,13 +83,13 @@ TEST_F(StatementHistory, AnOlderCopyDoesNotBringBackWhatWasWithdrawn) {
   state(map(), {sign, lamp});
   const fs::path older = copied("older");
   state(map(), {}, {sign.id()});
-  Notes notes;
+  StatementNotes notes;
   const fs::path both = merged(map(), older, notes);
   EXPECT_THAT(statementsOf(both), UnorderedElementsAre(lamp.id()));
   EXPECT_THAT(notes.all, HasSubstr("1 operator statements are left out"));
   EXPECT_THAT(notes.all, HasSubstr(sign.id().hex()));
   EXPECT_TRUE(canonicalText(both) == canonicalText(map()));
-  Notes again;
+  StatementNotes again;
   EXPECT_THAT(statementsOf(merged(copied("third"), older, again)), UnorderedElementsAre(lamp.id()));
 }
 
@@ -104,7 +99,7 @@ TEST_F(StatementHistory, WhatWasStatedAgainAfterItsWithdrawalStays) {
   const fs::path older = copied("older");
   state(map(), {}, {sign.id()});
   state(map(), {sign});
-  Notes notes;
+  StatementNotes notes;
   EXPECT_THAT(statementsOf(merged(map(), older, notes)), UnorderedElementsAre(sign.id()));
   const fs::path withdrawn = copied("withdrawn");
   state(withdrawn, {}, {sign.id()});
@@ -157,7 +152,7 @@ TEST_F(StatementHistory, AnUpdateWithdrawsToo) {
   state(map(), {sign});
   const fs::path older = copied("older");
   updateMap(map(), deletionOf(sign.id()), {}, silence());
-  Notes notes;
+  StatementNotes notes;
   EXPECT_THAT(statementsOf(merged(map(), older, notes)), UnorderedElementsAre());
 }
 
@@ -166,7 +161,7 @@ TEST_F(StatementHistory, NamesAllAuthorsOfAStatementOnce) {
   const fs::path other = copied("other.clx");
   state(map(), {sign}, {}, "bert");
   state(other, {sign}, {}, "anna");
-  Notes notes;
+  StatementNotes notes;
   const auto known = knownStatements(MapReader(merged(map(), other, notes)).quads());
   ASSERT_EQ(known.size(), 1U);
   EXPECT_EQ(known[0].author, "anna, bert");

@@ -9,7 +9,6 @@
 #include <set>
 
 #include "cluxel/error.hpp"
-#include "mapping/build/operator_statements.hpp"
 #include "mapping/change/map_change.hpp"
 #include "mapping/change/map_merge.hpp"
 #include "mapping/change/map_things.hpp"
@@ -17,6 +16,7 @@
 #include "mapping/change/statement_change.hpp"
 #include "mapping/facts/object_geometry.hpp"
 #include "mapping/small_campus.hpp"
+#include "mapping/stated_builds.hpp"
 #include "mapping/statements/statement_facts.hpp"
 #include "rdf/map_iris.hpp"
 
@@ -68,11 +68,7 @@ class Statements : public testing::Test {
 
   /// The map of the same inputs, built from scratch with the statements that `file` holds.
   std::string fromScratch(const fs::path& file, const Poses& poses) const {
-    BuildParams params;
-    params.statements = operatorStatements(MapReader(file).quads());
-    const ScratchFolder other;
-    buildMap(posed(poses), *inputs, other.path() / "map.clx", params, silence());
-    return canonicalText(other.path() / "map.clx");
+    return builtWithStatementsOf(file, posed(poses), *inputs);
   }
 
   /// The largest object that is neither ground nor a street sign.
