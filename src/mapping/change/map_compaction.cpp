@@ -77,7 +77,9 @@ fs::path copyOf(const fs::path& map) {
 }
 
 void noteFailure(const fs::path& map, const std::exception& error, ProgressSink& sink) {
-  sink.note(map.string() + ": the map is sound, but its free space stays in the file: " + error.what());
+  const std::string name = map.string() + ": ", why = error.what();
+  sink.note(name + "the map is sound, but its free space stays in the file: " +
+            (why.starts_with(name) ? why.substr(name.size()) : why));
 }
 
 std::optional<rdf::FreeSpace> knownSpaceOf(const fs::path& map, ProgressSink& sink) {
