@@ -53,8 +53,17 @@ TEST(ChangedParts, NothingFollowsWhereNoRayOfTheOtherTimePassed) {
   EXPECT_EQ(partsIn(lampHead(kStructure, 0)), 0U);
 }
 
-TEST(ChangedParts, TwoScansThatPassedDoNotShowThatAPartIsGone) {
-  EXPECT_EQ(partsIn(lampHead(kStructure, 2)), 0U);
+TEST(ChangedParts, TwoScansThatPassedShowThatALargeThingIsGone) {
+  const std::vector<PointCell> large = lampHead(kStructure, 2);
+  EXPECT_EQ(partsIn(large), 1U);
+  EXPECT_EQ(partsIn(lampHead(kStructure, 1)), 0U);
+  EXPECT_EQ(partsIn(besideWhatStays(large)), 0U) << "a part of something";
+  std::vector<PointCell> half = large, some_hit = large;
+  std::erase_if(half, [](const PointCell& cell) { return cell.place.x() < -0.05; });
+  EXPECT_EQ(partsIn(half), 0U) << "a small one";
+  for (std::size_t i = 0; i < some_hit.size(); i += 8)
+    some_hit[i].other.hit_scans = bits(1), some_hit[i].other.through_scans = bits(2) & ~bits(1);
+  EXPECT_EQ(partsIn(some_hit), 0U) << "something is left";
 }
 
 TEST(ChangedParts, AScanWithAPoorPoseDoesNotKeepAPartThatIsGone) {
@@ -141,6 +150,51 @@ TEST(ChangedParts, RaysMayPassBesideTheEdgeOfAHeadWhenTheEvidenceIsStrong) {
   };
   EXPECT_EQ(partsIn(besideRow(head)), 1U);
   EXPECT_EQ(partsIn(besideWhatStays(head)), 0U) << "much stays beside it";
+}
+
+TEST(ChangedParts, APartInACrownIsGoneWhenTheLooksAtEachOfItsCellsAreClear) {
+  std::vector<PointCell> half = lampHead(kFoliage, 4);
+  std::erase_if(half, [](const PointCell& cell) { return cell.is_shared || cell.place.x() < 0.05; });
+  EXPECT_EQ(partsIn(besideWhatStays(half)), 1U);
+  std::vector<PointCell> gap = half, touched = half;
+  for (PointCell& cell : gap) cell.own.through_scans = bits(8) & ~bits(5);
+  EXPECT_EQ(partsIn(besideWhatStays(gap)), 0U) << "scans of its own time pass, too";
+  for (std::size_t i = 0; i < touched.size(); i += 2) touched[i].other.hit_scans = bits(1);
+  EXPECT_EQ(partsIn(besideWhatStays(touched)), 0U) << "leaves are left";
+}
+
+/// A wall of 20 by 20 cells that goes on to the side. Each of its cells is passed by one of four scans, or by more.
+std::vector<PointCell> wall(int scans_of_cell) {
+  std::vector<PointCell> cells;
+  for (int x = 0; x < 27; ++x)
+    for (int z = 0; z < 20; ++z) {
+      PointCell cell{.place = {0.1 * x, 0, 0.1 * z}, .is_shared = x >= 20, .scans = bits(5)};
+      cell.own = {.hit_scans = bits(5), .through_scans = bits(6) & ~bits(5), .rays = {.ended = 9, .passed = 1}};
+      for (int i = 0; i < scans_of_cell; ++i)
+        cell.other.through_scans.insert(static_cast<std::uint32_t>(x / 5 + i) % 4);
+      cells.push_back(cell);
+    }
+  return cells;
+}
+
+TEST(ChangedParts, AScanThatPassesOnePartOfAWallDoesNotTellOfAnother) {
+  EXPECT_EQ(partsIn(wall(1)), 0U);
+  EXPECT_EQ(partsIn(wall(2)), 1U);
+}
+
+TEST(ChangedParts, FewLooksAtLeavesDoNotShowThatAllOfThemAreGone) {
+  const auto leaves = [](int scans_of_cell) {
+    std::vector<PointCell> cells = lampHead(kFoliage, 0);
+    std::erase_if(cells, [](const PointCell& cell) { return cell.is_shared || cell.place.x() < 0.05; });
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      cells[i].own.through_scans = bits(8) & ~bits(5);
+      for (int scan = 0; scan < scans_of_cell; ++scan)
+        cells[i].other.through_scans.insert(static_cast<std::uint32_t>(i + static_cast<std::size_t>(scan)) % 3);
+    }
+    return cells;
+  };
+  EXPECT_EQ(partsIn(leaves(1)), 0U);
+  EXPECT_EQ(partsIn(leaves(3)), 1U);
 }
 
 /// Copies of a group side by side.

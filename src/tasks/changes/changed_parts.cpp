@@ -47,10 +47,15 @@ class Grouping {
  private:
   static constexpr std::size_t kSolidCells = 12, kTopCells = 16, kWholeCells = 20;
   static constexpr std::size_t kOwnScans = 4, kOwnScansOfTop = 3, kPassing = 3, kPassingSolid = 4;
-  static constexpr std::size_t kPassedCells = 3;                                          ///< of the group, by one scan
-  static constexpr double kWeak = 80, kStrong = 100, kEvident = 400, kEvidentOfCell = 3;  ///< log-odds of "gone"
+  static constexpr std::size_t kLargeCells = 40, kPassingLarge = 2;
+  static constexpr std::size_t kPassedCells = 3;  ///< of the group, by one scan
+  /// Log-odds of "gone".
+  static constexpr double kLeastOfWhole = 50, kWeak = 80, kStrong = 100, kClear = 150, kEvident = 400;
+  static constexpr double kOfCell = 3, kClearOfCell = 4.5;  ///< the same, on average of the cells
   static constexpr double kMostHitShare = 0.98, kOwnHits = 0.6, kOwnEnded = 0.7, kOwnEndedStrong = 0.55;
-  static constexpr double kRest = 0.15, kWholeRest = 0.02, kWholeAlike = 0.85, kAboveTop = 0.95, kAboveStrong = 0.7;
+  static constexpr double kClearHits = 0.7, kClearEnded = 0.5, kClearRest = 0.1;
+  static constexpr double kRest = 0.15, kWholeRest = 0.02, kWholeAlike = 0.85, kLargeAlike = 0.9, kAboveTop = 0.95,
+                          kAboveStrong = 0.7;
 
   static std::vector<ChangeState> statesOf(const std::vector<PointCell>& cells) {
     std::vector<ChangeState> states;
@@ -102,7 +107,7 @@ class Grouping {
   }
 
   static bool isPassed(const GroupEvidence& found) {
-    return found.scans >= kOwnScansOfTop && found.passing_scans >= kPassing &&
+    return found.scans >= kOwnScansOfTop && found.passing_scans >= kPassingLarge &&
            found.stopped <= kMostStopped * found.passing && found.other_hits <= kRest * found.other_looks;
   }
 
@@ -117,13 +122,22 @@ class Grouping {
   bool isGone(const ChangeGroup& group, const GroupEvidence& found) const {
     if (!isPassed(found) || found.own_hits < kOwnHits * found.own_looks) return false;
     const double log_odds = logOdds(found);
+    if (found.passing_scans < kPassing) return isLarge(found, group, log_odds);
     const auto height = [this](std::uint32_t cell) { return cells_[cell].place.z(); };
     const double above = groups_.shareOfChangedAbove(group, height);
     const bool is_top = above >= kAboveTop;
     if (is_top && group.size() >= kTopCells && log_odds >= kWeak) return true;
-    if (found.scans < kOwnScans || (!is_top && log_odds < kWeak)) return false;
-    return isSolid(found, group.size(), log_odds >= kStrong && above >= kAboveStrong) || isWhole(found, group) ||
-           (log_odds >= kEvident && log_odds >= kEvidentOfCell * static_cast<double>(group.size()));
+    const double of_cell = log_odds / static_cast<double>(group.size());
+    if (found.scans < kOwnScans || (!is_top && (log_odds < kWeak || of_cell < kOfCell))) return false;
+    return isSolid(found, group.size(), log_odds >= kStrong && above >= kAboveStrong) ||
+           isWhole(found, group, log_odds) || isClear(found, log_odds, of_cell) ||
+           (log_odds >= kEvident && of_cell >= kOfCell);
+  }
+
+  /// Whether the looks at each cell tell so much, on average, that it does not matter what the part is made of.
+  static bool isClear(const GroupEvidence& found, double log_odds, double of_cell) {
+    return log_odds >= kClear && of_cell >= kClearOfCell && found.own_hits >= kClearHits * found.own_looks &&
+           found.own_ended >= kClearEnded * found.own_rays && found.other_hits <= kClearRest * found.other_looks;
   }
 
   static bool isSolid(const GroupEvidence& found, std::size_t cells, bool is_strong) {
@@ -131,9 +145,19 @@ class Grouping {
            found.own_ended >= (is_strong ? kOwnEndedStrong : kOwnEnded) * found.own_rays;
   }
 
-  bool isWhole(const GroupEvidence& found, const ChangeGroup& group) const {
-    return group.size() >= kWholeCells && found.other_hits <= kWholeRest * found.other_looks &&
-           groups_.shareOfChanged(groups_.withNear(group)) >= kWholeAlike;
+  bool isWhole(const GroupEvidence& found, const ChangeGroup& group, double log_odds) const {
+    return group.size() >= kWholeCells && hasLeft(found, group, log_odds, kWholeAlike);
+  }
+
+  /// Whether all of something is gone that is so large that two scans do not miss it: their poses are not off alike.
+  bool isLarge(const GroupEvidence& found, const ChangeGroup& group, double log_odds) const {
+    return group.size() >= kLargeCells && found.scans >= kOwnScans && hasLeft(found, group, log_odds, kLargeAlike);
+  }
+
+  /// Whether hardly a look of the other time hits the group, and at least `alike` of what is in and around it changed.
+  bool hasLeft(const GroupEvidence& found, const ChangeGroup& group, double log_odds, double alike) const {
+    return log_odds >= kLeastOfWhole && found.other_hits <= kWholeRest * found.other_looks &&
+           groups_.shareOfChanged(groups_.withNear(group)) >= alike;
   }
 
   const std::vector<PointCell>& cells_;

@@ -25,14 +25,17 @@ ChangeState stateOf(const PointCell& cell);
 ///   around it that lie at the height of its middle or higher, 95 % changed like it. Nothing stays at its height; or
 /// - solid: mostly not of foliage; four scans measured it and four passed it; 70 % of the rays of its own time end
 ///   there, or 55 % when the log-odds are 100 or more and 70 % of the decided cells from its middle upwards changed; or
-/// - gone as a whole: 20 cells or more that four scans measured; at most 2 % of the looks of the other time hit it, and
-///   85 % of the decided cells in and around it changed like it; or
-/// - evident: four scans measured it; log-odds of 400 or more, and 3 or more for each cell. Rays pass through a bicycle
+/// - gone as a whole: 20 cells or more that four scans measured; log-odds of 50 or more; at most 2 % of the looks of
+///   the other time hit it, and 85 % of the decided cells in and around it changed like it. Two scans that passed are
+///   enough for 40 cells of which 90 % changed; or
+/// - clear: four scans measured it; log-odds of 150 or more, and 4.5 or more on average of its cells; 70 % of the looks
+///   and half of the rays of its own time hit it, and at most 10 % of the looks of the other time do; or
+/// - evident: four scans measured it; log-odds of 400 or more, and 3 or more on average. Rays pass through a bicycle
 ///   and a bush while they are there, but not all of them.
-/// The last three need log-odds of 80 or more, too, where something stays at the height of the group: what few looks
-/// miss beside something that stays is mostly an edge of it, seen with poor poses. Some scans still hit a head that is
-/// gone, because the pole in it seems to stand elsewhere. And rays find gaps in a crown that no ray of the other time
-/// found, so that foliage is never called solid.
+/// All but the first need log-odds of 80 or more, and 3 or more on average, where something stays at the height of the
+/// group: what few looks miss beside something that stays is mostly an edge of it, seen with poor poses or along its
+/// face. Some scans still hit a head that is gone, because the pole in it seems to stand elsewhere. And rays find gaps
+/// in a crown that no ray of the other time found, so that foliage is never called solid.
 std::vector<ChangeGroup> changedParts(const std::vector<PointCell>& cells);
 
 /// Those of the possible parts that changedParts() keeps. `cells` need not hold more than these and what is near them.
