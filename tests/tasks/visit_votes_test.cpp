@@ -49,6 +49,31 @@ TEST(PlaceVotes, TellsOnWhichVisitsAThingWasThere) {
   EXPECT_THAT(visitsWithoutIt(votesOf(20, scans({}), scans({3}))), IsEmpty()) << "it was never there";
 }
 
+TEST(PlaceVotes, WhatStoodInSomeOfThePlacesBeforeDoesNotHideThatTheThingWasAway) {
+  PlaceVotes votes(threeVisits(), 33);
+  for (std::size_t i = 0; i < 33; ++i)
+    i < 10 ? votes.addPlace(scans({0, 3}), scans({})) : votes.addPlace(scans({3}), scans({0}));
+  EXPECT_THAT(visitsWithoutIt(votes.take()), ElementsAre(0));
+}
+
+TEST(PlaceVotes, TellHowOftenAThingCameOrWent) {
+  EXPECT_EQ(comingsAndGoings(votesOf(20, scans({0, 2}), scans({3}))), 1U);
+  EXPECT_EQ(comingsAndGoings(votesOf(20, scans({0, 3}), scans({2}))), 2U);
+  EXPECT_EQ(comingsAndGoings(votesOf(20, scans({0, 3}), scans({}))), 0U) << "one visit tells nothing";
+  const VisitVotes first = votesOf(20, scans({0}), scans({2})), last = votesOf(20, scans({3}), scans({}));
+  EXPECT_EQ(comingsAndGoings(joined(first, last)), 2U);
+}
+
+TEST(PlaceVotes, AVisitOfWhichMostScansPassDoesNotFindTheThing) {
+  const Visits visits(std::vector<double>{0, 4000, 4060, 4120, 8000}, 8000);  // the second visit has three scans
+  PlaceVotes votes(visits, 20);
+  for (std::size_t i = 0; i < 20; ++i)
+    i < 14 ? votes.addPlace(scans({1, 4}), scans({0, 2, 3})) : votes.addPlace(scans({4}), scans({0, 1, 2, 3}));
+  const VisitVotes found = votes.take();
+  EXPECT_THAT(visitsWithIt(found), ElementsAre(1, 2)) << "a place that one scan hits is hit";
+  EXPECT_EQ(comingsAndGoings(found), 1U) << "away, away, and there";
+}
+
 TEST(PlaceVotes, AnotherScanOfTheVisitThatPassesDoesNotTellThatItLeft) {
   EXPECT_FALSE(isAwayAtEnd(votesOf(20, scans({0}), scans({1}))));
   EXPECT_TRUE(isAwayAtEnd(votesOf(20, scans({0}), scans({1, 2}))));

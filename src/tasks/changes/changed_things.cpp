@@ -142,7 +142,7 @@ class Things {
       const ObjectStates* states = statesOf(most->first);
       const bool is_gone_as_whole = states == nullptr || stateAtOtherTime(*states) == PresenceState::Absent;
       thing.is_part = (stable != survey_.stable_of_object.end() && stable->second > most->second) || !is_gone_as_whole;
-      if (states != nullptr && isHiddenPart(*states, votes[1 - time_])) return;
+      if (states != nullptr && (isHiddenPart(*states, votes[1 - time_]) || isMissedPart(*states, votes))) return;
     }
     things_.push_back(std::move(thing));
   }
@@ -189,6 +189,14 @@ class Things {
     });
     const VisitVotes with_it = votesOn(object.visits, votes);
     return is_known_with_it && with_it.visits.size() < votes.visits.size() && !isAwayAtEnd(with_it);
+  }
+
+  /// Whether the object is there at both times, and rays find the part on some visits and see through it on others in
+  /// turn. Then rays from some places miss it: hardly any part leaves, comes back and leaves again.
+  static bool isMissedPart(const ObjectStates& object, const VotesOfTimes& votes) {
+    constexpr std::size_t kTurns = 3;
+    return object.before == PresenceState::Present && object.after == PresenceState::Present &&
+           comingsAndGoings(joined(votes[kBefore], votes[kAfter])) >= kTurns;
   }
 
   bool isNearChange(const Eigen::AlignedBox3d& box, std::size_t clusters) const {

@@ -31,7 +31,8 @@ struct ChangedThings {
 /// cluxels (changedParts). Things that stood side by side are told apart (sheetsOf). An object of which neither tells
 /// is a thing, too, when its states do (ChangeSurvey::wholes). A thing is dropped when the last visits of the time at
 /// which it was there saw through it: it had left before, or has left again. A part of an object that is there at both
-/// times is dropped when only visits without the object saw through the part's place.
+/// times is dropped when only visits without the object saw through the part's place, and when visits found the part
+/// and saw through it in turn, three times or more: then rays miss it from some places.
 ChangedThings changedThings(const ChangeSurvey& survey);
 
 }  // namespace cluxel::tasks

@@ -32,10 +32,16 @@ class Visits {
   std::vector<std::uint32_t> of_scan_;
 };
 
+/// How often scans hit places of a thing, and how often they passed one.
+struct LookCounts {
+  std::size_t hits = 0, passed = 0;
+};
+
 /// One vote a visit; scans of one visit speak together, and a place that one of them hit is hit.
 struct VisitVotes {
   std::vector<std::uint32_t> visits;         ///< ascending
   std::vector<perception::ScanVotes> votes;  ///< of each of them; without a time
+  std::vector<LookCounts> looks;             ///< of the scans of each of them, which speak one by one here
 };
 
 /// Gathers what scans found at the places of a thing.
@@ -50,6 +56,7 @@ class PlaceVotes {
   const Visits& visits_;
   std::size_t places_, added_ = 0;
   std::map<std::uint32_t, perception::ScanVotes> of_visit_;
+  std::map<std::uint32_t, LookCounts> looks_;
 };
 
 /// Merges votes of scans, which ascend by time.
@@ -61,11 +68,20 @@ VisitVotes votesOn(std::span<const std::uint32_t> visits, const VisitVotes& vote
 /// The visits on which the thing was surely there, ascending.
 std::vector<std::uint32_t> visitsWithIt(const VisitVotes& votes);
 
-/// The visits that surely saw it away, where it was surely there on another, ascending.
+/// The visits that surely saw it away, where it was surely there on another, ascending. How often rays hit it follows
+/// from the visit that speaks most for it: on others something else may have stood in some of its places.
 std::vector<std::uint32_t> visitsWithoutIt(const VisitVotes& votes);
 
 /// Whether the last of the visits show that the thing had left after it was there.
 bool isAwayAtEnd(const VisitVotes& votes);
+
+/// What the visits of two times found at the places of a thing, in one list.
+VisitVotes joined(const VisitVotes& before, const VisitVotes& after);
+
+/// How often the thing came or went from one visit that tells of it for certain to the next one. The looks of its scans
+/// tell, because some rays end in places that are mostly passed: a pole runs through the place of a head. How often
+/// rays hit the thing follows as for visitsWithoutIt().
+std::size_t comingsAndGoings(const VisitVotes& votes);
 
 bool haveCommon(std::span<const std::uint32_t> ascending, std::span<const std::uint32_t> others);
 
