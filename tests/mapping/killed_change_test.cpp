@@ -58,6 +58,12 @@ class ApartScans {
     for (std::size_t i = 0; i < size(); ++i) posed.push_back({i, poseOf(i, i < moved)});
     return scansOf(campus_.files()).posed(posed);
   }
+  /// All but `left_out` scans from the second one on.
+  ScanSet withoutSome(std::size_t left_out) const {
+    std::vector<PosedScan> posed{{0, poseOf(0, false)}};
+    for (std::size_t i = 1 + left_out; i < size(); ++i) posed.push_back({i, poseOf(i, false)});
+    return scansOf(campus_.files()).posed(posed);
+  }
   /// Of all, in another order.
   std::vector<ScanPose> moves() const {
     std::vector<ScanPose> all;
@@ -129,6 +135,49 @@ TEST_F(KilledChange, RetractingIsAllOrNothing) {
   const ScanId id = scansOf({file(1)}).load(0).id;
   expectAllOrNothing([&](ProgressSink& sink) { retractScans(map(), {id}, params(), sink); },
                      builtText({file(0)}, *inputs));
+}
+
+TEST_F(KilledChange, RetractingManyScansGoesOnBatchByBatch) {
+  const ApartScans apart;
+  const std::size_t gone = apart.size() - 1;
+  std::set<std::string> states;
+  std::string after;
+  for (std::size_t scans = 0; scans <= gone; ++scans) {
+    buildMap(apart.withoutSome(scans), *inputs, map(), {.force = true}, silence());
+    states.insert(after = canonicalText(map()));
+  }
+  EXPECT_EQ(states.size(), gone + 1);
+  const fs::path kept = folder.path() / "kept";
+  buildMap(apart.scans(0), *inputs, kept, {}, silence());
+  std::vector<ScanId> ids;
+  for (const ScanPose& move : apart.moves()) ids.push_back(move.scan);
+  ids.pop_back();  // the first one
+  const auto prepare = [&] { fs::copy_file(kept, map(), fs::copy_options::overwrite_existing); };
+  std::size_t local_commits = 0;
+  const auto change = [&](ProgressSink& sink) {
+    ChangeParams one_by_one = params();
+    one_by_one.batch_points = 1;
+    local_commits += retractScans(map(), ids, one_by_one, sink).local_commits;
+  };
+  expectExact(prepare, change, states, after, [&] { return canonicalText(map()); });
+  EXPECT_GT(local_commits, 0U);
+
+  // All but none may go, and nothing goes before that is known.
+  prepare();
+  for (const ScanPose& move : apart.moves())
+    if (std::find(ids.begin(), ids.end(), move.scan) == ids.end()) ids.push_back(move.scan);
+  EXPECT_THROW(retractScans(map(), ids, {.batch_points = 1}, silence()), Error);
+  EXPECT_TRUE(canonicalText(map()) == canonicalText(kept));
+  ids.pop_back();
+  ChangeParams params{.batch_points = 1, .dry_run = true};
+  const ChangeReport dry = retractScans(map(), ids, params, silence());
+  EXPECT_TRUE(canonicalText(map()) == canonicalText(kept)) << "a dry run wrote";
+  params.dry_run = false;
+  const ChangeReport real = retractScans(map(), ids, params, silence());
+  for (const ChangeReport* report : {&dry, &real}) EXPECT_EQ(report->scans_removed, gone);
+  EXPECT_EQ(activitiesIn(MapReader(map()).quads()).size(), 1 + gone) << "the build, and a commit for each scan";
+  EXPECT_EQ(dry.objects.gone, real.objects.gone);
+  EXPECT_EQ(dry.tiles_changed, real.tiles_changed);
 }
 
 TEST_F(KilledChange, ApplyingRulesIsAllOrNothing) {

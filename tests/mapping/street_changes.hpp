@@ -142,18 +142,18 @@ class StreetChanges {
       gone.push_back(scans_.idOf(scan->first));
       there_.erase(scan);
     }
-    if (!gone.empty()) retractScans(map(), gone, {}, silence());
+    if (!gone.empty()) retractScans(map(), gone, inParts(), silence());
     std::map<std::size_t, int> fresh;
     for (std::size_t scan = 0; scan < scans_.size(); ++scan)
       if (!there_.contains(scan) && below(6) != 0) fresh[scan] = static_cast<int>(below(2));
-    ChangeParams params{.threads = 1 + static_cast<unsigned>(below(2)), .whole_cluxels = 50U << below(5)};
-    params.stage_points = below(2) == 0 ? 1 : 30'000;
+    ChangeParams params = inParts();
+    if (below(3) != 0) params.max_window_share = 2;  // else what changes most of the map is decided as a whole
     const std::filesystem::path copy = folder_.path() / "copy.clx";
     std::filesystem::copy_file(map(), copy, std::filesystem::copy_options::overwrite_existing);
     const ChangeReport report = extendMap(map(), scans_.at(fresh, folder_.path()), params, silence());
     const ChangeReport at_once = extendMap(copy, scans_.at(fresh, folder_.path()), {.max_window_share = 2}, silence());
     EXPECT_EQ(countsOf(report.objects), countsOf(at_once.objects)) << "the report follows the strips";
-    if (report.local_commits == 1 && report.tiles_decided > report.tiles) ++computed_;  // beside strips twice
+    if (report.tiles_decided > report.tiles) ++computed_;  // beside strips twice
     there_.merge(fresh);
     return "grow in bands of " + std::to_string(params.stage_points) + " points";
   }
@@ -252,8 +252,10 @@ class StreetChanges {
   std::size_t below(std::size_t count) { return static_cast<std::size_t>(random_() % count); }
   ChangeParams params() {
     const unsigned threads = 1 + static_cast<unsigned>(below(2));
-    if (how_ == How::Around) return {.threads = threads, .max_window_share = 2};
-    return {.threads = threads, .max_window_share = 0, .whole_cluxels = 100U << 2 * below(3)};
+    const std::uint64_t stage_points = below(2) == 0 ? 1 : kStagePoints;
+    if (how_ == How::Around) return {.threads = threads, .stage_points = stage_points, .max_window_share = 2};
+    return {
+        .threads = threads, .stage_points = stage_points, .max_window_share = 0, .whole_cluxels = 100U << 2 * below(3)};
   }
   std::vector<ContentHash> statements() const {
     std::vector<ContentHash> ids;
@@ -281,6 +283,12 @@ class StreetChanges {
             {},
             {},
             regionAnchor(reader.clouds(), {at - up, at + right, at + up, at - right})};
+  }
+  /// In bands and strips.
+  ChangeParams inParts() {
+    ChangeParams params{.threads = 1 + static_cast<unsigned>(below(2)), .whole_cluxels = 50U << below(5)};
+    params.stage_points = below(2) == 0 ? 1 : 30'000;
+    return params;
   }
   void note(const ChangeReport& report) {
     const bool is_in_strips = report.local_commits == 0 && report.tiles_decided > report.tiles;  // beside strips twice

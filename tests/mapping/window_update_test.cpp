@@ -105,11 +105,20 @@ TEST(WindowUpdate, TellsTheSameObjectsInStrips) {
     const fs::path at_once = folder.path() / "at_once.clx", in_strips = folder.path() / "in_strips.clx";
     buildMap(scans.at(there, folder.path()), shippedInputs(), at_once, {}, silence());
     fs::copy_file(at_once, in_strips);
+    const fs::path whole = folder.path() / "whole.clx";
+    fs::copy_file(at_once, whole);
     const ScanSet added = scans.at(fresh, folder.path());
-    const ChangeReport report = extendMap(in_strips, added, {.whole_cluxels = 200}, silence());
+    const ChangeReport report = extendMap(in_strips, added, {.max_window_share = 2, .whole_cluxels = 200}, silence());
+    EXPECT_EQ(report.local_commits, 1U) << "was decided as a whole";
     EXPECT_GT(report.tiles_decided, report.tiles) << "was not decided in strips";
-    EXPECT_EQ(countsOf(report.objects), countsOf(extendMap(at_once, added, {.max_window_share = 2}, silence()).objects))
-        << "seed " << seed;
+    // Half of the scans see nearly all tiles.
+    const ChangeReport of_whole = extendMap(whole, added, {.whole_cluxels = 200}, silence());
+    EXPECT_EQ(of_whole.local_commits, 0U) << "strips took tiles from one state to another";
+    EXPECT_GT(of_whole.tiles_decided, of_whole.tiles) << "was not decided in strips";
+    const auto objects = countsOf(extendMap(at_once, added, {.max_window_share = 2}, silence()).objects);
+    EXPECT_EQ(countsOf(report.objects), objects) << "seed " << seed;
+    EXPECT_EQ(countsOf(of_whole.objects), objects) << "seed " << seed;
+    EXPECT_TRUE(canonicalText(whole) == canonicalText(in_strips)) << "seed " << seed;
   }
 }
 
@@ -118,7 +127,7 @@ TEST(WindowUpdate, TellsWhatRaysPassBeyondTheStrips) {
   const fs::path map = rays.file("map.clx"), at_once = rays.file("at_once.clx"), fresh = rays.file("fresh.clx");
   buildMap(rays.scans(0, 3), shippedInputs(), map, {}, silence());
   fs::copy_file(map, at_once);
-  const ChangeReport report = extendMap(map, rays.scans(3, 6), {.whole_cluxels = 60}, silence());
+  const ChangeReport report = extendMap(map, rays.scans(3, 6), {.max_window_share = 2, .whole_cluxels = 60}, silence());
   EXPECT_EQ(report.local_commits, 1U) << "was decided as a whole";
   EXPECT_GT(report.tiles_decided,
             extendMap(at_once, rays.scans(3, 6), {.max_window_share = 2}, silence()).tiles_decided)

@@ -2,6 +2,7 @@
 // Ends a band when its rows have enough points, and unpacks the scans that reach into it.
 #include "mapping/build/scan_bands.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "base/free_memory.hpp"
@@ -23,7 +24,14 @@ ScanBands::ScanBands(const rdf::ReadTransaction& transaction, PointChanges chang
     for (const perception::ScanSegment& segment : segments) points_of_row_[rowOf(tile, axis_)] += segment.size();
   for (const auto& [tile, points] : changes_.stored_points) points_of_row_[rowOf(tile, axis_)] += points;
   for (const auto& [tile, points] : points_there) points_of_row_[rowOf(tile, axis_)] += points;
-  for (const auto& [scan, first] : changes_.stored) scans_.emplace(rowOf(first, axis_), scan);
+  std::map<scan::ScanId, std::int64_t> first_rows;
+  for (const auto* scans : {&changes_.stored, &changes_.scans_anew})
+    for (const auto& [scan, lowest] : *scans) {
+      const std::int64_t row = rowOf(lowest, axis_);
+      const auto [there, is_new] = first_rows.try_emplace(scan, row);
+      there->second = std::min(there->second, row);
+    }
+  for (const auto& [scan, row] : first_rows) scans_.emplace(row, scan);
 }
 
 perception::PointBand ScanBands::next() {
@@ -62,8 +70,12 @@ void ScanBands::unpackBefore(std::int64_t end) {
     }
     for (ScanSegments& segments : segmentsOfScans(transaction_, scans, threads_))
       for (auto& [tile, segment] : segments)
-        if (!changes_.anew.contains(tile)) changes_.added[tile].push_back(std::move(segment));
+        if (isWanted(segment.scan, tile)) changes_.added[tile].push_back(std::move(segment));
   }
+}
+
+bool ScanBands::isWanted(const scan::ScanId& scan, const perception::TileKey& tile) const {
+  return (changes_.anew.contains(tile) ? changes_.scans_anew : changes_.stored).contains(scan);
 }
 
 }  // namespace cluxel::mapping

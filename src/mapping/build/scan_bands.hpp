@@ -25,6 +25,8 @@ class ScanBands final : public perception::PointBands {
  private:
   std::int64_t nextEnd();
   void unpackBefore(std::int64_t end);
+  /// Whether what the scan has in the tile is wanted: all of tiles that are read anew, in others what is new.
+  bool isWanted(const scan::ScanId& scan, const perception::TileKey& tile) const;
 
   const rdf::ReadTransaction& transaction_;
   PointChanges changes_;  ///< `added`: what is unpacked and in no band yet

@@ -196,10 +196,18 @@ void giveUp(perception::TileOutputs& outputs, const std::function<bool(const Til
   eraseOf(outputs.features), eraseOf(outputs.labels), eraseOf(outputs.components), eraseOf(outputs.contacts);
 }
 
+using PointCounts = std::map<TileKey, std::uint64_t>;
+
+std::uint64_t sumOf(const PointCounts& counts) {
+  std::uint64_t sum = 0;
+  for (const auto& [tile, count] : counts) sum += count;
+  return sum;
+}
+
 /// About how many points the tiles have in the map; none for new ones.
-std::map<TileKey, std::uint64_t> pointsIn(const rdf::ReadTransaction& transaction, const TileSet& tiles) {
+PointCounts pointsIn(const rdf::ReadTransaction& transaction, const TileSet& tiles) {
   constexpr std::uint64_t kPointsOfCluxel = 12;  // generated campuses: 6.3 million points, 523 thousand cluxels
-  std::map<TileKey, std::uint64_t> points;
+  PointCounts points;
   for (const TileKey& tile : tiles)
     if (const auto block = transaction.block(tables::kSummaries, tables::keyOf(tile)))
       points.emplace(tile, kPointsOfCluxel * perception::cluxelsIn(*block));
@@ -243,20 +251,18 @@ TileSet TileStages::run(rdf::WriteTransaction& transaction, PointChanges changes
   }
   if (donor || changes.hasAdded() || !changes.anew.empty())
     changes_.lender = changes.is_lender && changes_.tiles.empty() ? changes.copied : nullptr;
-  // The scans are stored already: all points of these tiles are read, also those that were added.
-  for (auto& [tile, segments] : storedSegments(transaction, changes.anew))
-    changes.added.insert_or_assign(tile, std::move(segments));
+  const bool are_many = !donor && sumOf(pointsIn(transaction, changes.anew)) > max_points_ + max_points_ / 2;
+  changes.readAnew(transaction, are_many);  // the scans are stored already, also those that were added
   const perception::RunOptions options{.threads = threads,
                                        .store = &store,
                                        .observer = &progress,
                                        .anew = changes.anew,
                                        .compute_anew = compute_anew,
                                        .donor = donor ? &*donor : nullptr};
-  const std::map<TileKey, std::uint64_t> points_there = pointsIn(transaction, without(changes.tiles(), changes.anew));
-  std::uint64_t points = 0;
-  for (const auto& [tile, count] : points_there) points += count;
+  const PointCounts points_there =
+      pointsIn(transaction, are_many ? changes.tiles() : without(changes.tiles(), changes.anew));
   TileSet changed;
-  if (changes.stored.empty() && (donor || points < max_points_)) {
+  if (changes.stored.empty() && (donor || sumOf(points_there) < max_points_)) {
     changed = runStages(std::move(changes.added), labeller_, params_, outputs_, options);
   } else {
     ScanBands bands(transaction, std::move(changes), points_there, max_points_ / 2, threads);

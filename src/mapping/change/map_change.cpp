@@ -85,13 +85,11 @@ ChangeReport addedTo(const fs::path& file, const scan::ScanSet& scans, const Cha
   return addBy(editor, scans);
 }
 
-ChangeReport removedFrom(const fs::path& file, const std::vector<scan::ScanId>& scans, const ChangeParams& params,
-                         ProgressSink& sink) {
-  requireOnce(scans);
-  MapEditor editor(file, params, sink);
-  rdf::WriteTransaction transaction = editor.begin();
+/// The clouds of these scans, from place to place. Scans that an earlier command retracted, perhaps this one before it
+/// was killed, are only noted.
+std::vector<Cloud> cloudsToRetract(const std::vector<scan::ScanId>& scans, const rdf::ReadTransaction& transaction,
+                                   ProgressSink& sink) {
   std::optional<std::vector<RetractedScan>> retracted;
-  // Whether an earlier command retracted the scan, perhaps this one before it was killed.
   const auto isRetracted = [&](const scan::ScanId& id) {
     if (!retracted) retracted = retractedScans(transaction);
     const auto scan = std::find_if(retracted->begin(), retracted->end(), [&](const auto& one) { return one.id == id; });
@@ -100,18 +98,80 @@ ChangeReport removedFrom(const fs::path& file, const std::vector<scan::ScanId>& 
     sink.note("cloud " + id.hex() + source + " was retracted already, on " + scan->time);
     return true;
   };
+  std::vector<Cloud> clouds;
+  for (const scan::ScanId& id : scans) {
+    std::optional<Cloud> cloud = storedCloud(transaction, id);
+    if (!cloud && isRetracted(id)) continue;
+    clouds.push_back(cloud ? *std::move(cloud) : requiredCloud(transaction, id));
+  }
+  sortAlongLongerSide(
+      clouds, [](const Cloud& cloud) { return Eigen::Vector2d((cloud.min + cloud.max).head<2>() / 2); },
+      [](const Cloud& cloud) { return cloud.id; });
+  return clouds;
+}
+
+/// The tiles that the bounds of a cloud reach.
+TileSet tilesBelow(const Cloud& cloud) {
+  TileSet tiles;
+  const perception::TileKey first = perception::tileOf(cloud.min), last = perception::tileOf(cloud.max);
+  for (std::int32_t x = first.x; x <= last.x; ++x)
+    for (std::int32_t y = first.y; y <= last.y; ++y) tiles.insert({x, y});
+  return tiles;
+}
+
+/// The size of batches in which these clouds of the map move or go, in points. They are one batch when batches would
+/// compute each tile more than twice on average, for instance when all scans see the same place.
+std::uint64_t batchSizeOf(const std::vector<Cloud>& clouds, const rdf::ReadTransaction& transaction,
+                          std::uint64_t max_points) {
+  std::uint64_t points = 0, map_points = 0, batch_points = 0;
+  for (const Cloud& cloud : clouds) points += cloud.point_count;
+  for (const Cloud& cloud : storedClouds(transaction)) map_points += cloud.point_count;
+  const std::uint64_t size = partSize(points, map_points, max_points);
+  TileSet all, of_batch;
+  std::size_t computed = 0, scans = 0;
+  for (std::size_t i = 0; i < clouds.size(); ++i) {
+    of_batch.merge(tilesBelow(clouds[i]));
+    batch_points += clouds[i].point_count;
+    const std::size_t left = clouds.size() - i - 1;
+    if (left > 0 && !isFull(batch_points, ++scans, left, size)) continue;
+    computed += of_batch.size();
+    all.merge(std::exchange(of_batch, {}));
+    batch_points = 0, scans = 0;
+  }
+  return computed > 2 * all.size() ? std::max<std::uint64_t>(points, 1) : size;
+}
+
+ChangeReport removedFrom(const fs::path& file, const std::vector<scan::ScanId>& scans, const ChangeParams& params,
+                         ProgressSink& sink) {
+  requireOnce(scans);
+  MapEditor editor(file, params, sink);
+  std::optional<rdf::WriteTransaction> transaction(editor.begin());
+  const std::vector<Cloud> clouds = cloudsToRetract(scans, *transaction, sink);
+  if (clouds.size() == storedClouds(*transaction).size())
+    throw Error(ErrorKind::InvalidArgument, file.string() + ": no scan would be left; remove the file instead");
+  const std::uint64_t batch_points = batchSizeOf(clouds, *transaction, params.batch_points.value_or(kStagePoints));
   PointChanges changes;
   std::vector<Cloud> removed;
-  for (std::size_t i = 0; i < scans.size(); ++i) {
-    sink.progress("scans", i + 1, scans.size());
-    if (!storedCloud(transaction, scans[i]) && isRetracted(scans[i])) continue;
-    removed.push_back(requiredCloud(transaction, scans[i]));
-    changes.anew = unionOf(std::move(changes.anew), removeScan(transaction, scans[i]));
+  std::uint64_t points = 0;
+  try {
+    for (std::size_t i = 0; i < clouds.size(); ++i) {
+      if (!transaction) transaction.emplace(editor.begin());
+      changes.anew = unionOf(std::move(changes.anew), removeScan(*transaction, clouds[i].id));
+      removed.push_back(clouds[i]);
+      points += clouds[i].point_count;
+      sink.progress("scans", i + 1, clouds.size());
+      const std::size_t left = clouds.size() - i - 1;
+      if (left > 0 && !isFull(points, removed.size(), left, batch_points)) continue;
+      editor.commit(*transaction, "retract", std::exchange(changes, {}), removed);
+      editor.result().scans_removed += removed.size();
+      removed.clear();
+      points = 0;
+      if (!params.dry_run) transaction.reset();
+    }
+  } catch (...) {
+    noteDone(editor, editor.result().scans_removed, "retracted");
+    throw;
   }
-  if (storedClouds(transaction).empty())
-    throw Error(ErrorKind::InvalidArgument, file.string() + ": no scan would be left; remove the file instead");
-  editor.result().scans_removed = removed.size();
-  if (!removed.empty()) editor.commit(transaction, "retract", std::move(changes), removed);
   return editor.takeReport();
 }
 
@@ -135,37 +195,6 @@ std::vector<Move> movesTo(const std::vector<ScanPose>& poses, const rdf::ReadTra
   return moves;
 }
 
-/// The tiles that the bounds of a cloud reach.
-TileSet tilesBelow(const Cloud& cloud) {
-  TileSet tiles;
-  const perception::TileKey first = perception::tileOf(cloud.min), last = perception::tileOf(cloud.max);
-  for (std::int32_t x = first.x; x <= last.x; ++x)
-    for (std::int32_t y = first.y; y <= last.y; ++y) tiles.insert({x, y});
-  return tiles;
-}
-
-/// The batch size of a move, in points. All moves are one batch when batches would compute each tile more than twice on
-/// average, for instance when all scans see the same place.
-std::uint64_t batchSizeOf(const std::vector<Move>& moves, const rdf::ReadTransaction& transaction,
-                          std::uint64_t max_points) {
-  std::uint64_t points = 0, map_points = 0, batch_points = 0;
-  for (const Move& move : moves) points += move.before.point_count;
-  for (const Cloud& cloud : storedClouds(transaction)) map_points += cloud.point_count;
-  const std::uint64_t size = partSize(points, map_points, max_points);
-  TileSet all, of_batch;
-  std::size_t computed = 0, scans = 0;
-  for (std::size_t i = 0; i < moves.size(); ++i) {
-    of_batch.merge(tilesBelow(moves[i].before));
-    batch_points += moves[i].before.point_count;
-    const std::size_t left = moves.size() - i - 1;
-    if (left > 0 && !isFull(batch_points, ++scans, left, size)) continue;
-    computed += of_batch.size();
-    all.merge(std::exchange(of_batch, {}));
-    batch_points = 0, scans = 0;
-  }
-  return computed > 2 * all.size() ? std::max<std::uint64_t>(points, 1) : size;
-}
-
 ChangeReport movedIn(const fs::path& file, const std::vector<ScanPose>& poses, const ChangeParams& params,
                      ProgressSink& sink) {
   std::vector<scan::ScanId> named;
@@ -174,7 +203,9 @@ ChangeReport movedIn(const fs::path& file, const std::vector<ScanPose>& poses, c
   MapEditor editor(file, params, sink);
   std::optional<rdf::WriteTransaction> transaction(editor.begin());
   const std::vector<Move> moves = movesTo(poses, *transaction);
-  const std::uint64_t batch_points = batchSizeOf(moves, *transaction, params.batch_points.value_or(kStagePoints));
+  std::vector<Cloud> before;
+  for (const Move& move : moves) before.push_back(move.before);
+  const std::uint64_t batch_points = batchSizeOf(before, *transaction, params.batch_points.value_or(kStagePoints));
   PointChanges changes;
   std::vector<Cloud> moved;
   std::uint64_t points = 0;

@@ -26,7 +26,7 @@ namespace cluxel::mapping {
 struct ChangeParams {
   unsigned threads = 1;
   /// A batch is committed when it holds this many points. Absent: kBatchPoints where scans are added, kStagePoints
-  /// where they move or maps are merged.
+  /// where they move or go, or maps are merged.
   std::optional<std::uint64_t> batch_points = {};
   bool dry_run = false;                       ///< compute what would change, and write nothing
   std::uint64_t stage_points = kStagePoints;  ///< batches of more than 1.5 times as many go through the stages in bands

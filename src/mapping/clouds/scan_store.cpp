@@ -136,12 +136,15 @@ bool isThere(rdf::WriteTransaction& transaction, const Cloud& given) {
                    "give each scan once; to correct its pose, move the scan in the map", Remedy::MoveScans);
 }
 
-/// Whether points of the cloud can lie in one of the tiles, by its bounds.
-bool mayTouch(const Cloud& cloud, const TileSet& tiles) {
+/// The lowest x and y of those of the tiles in which points of the cloud can lie, by its bounds.
+std::optional<perception::TileKey> lowestBelow(const Cloud& cloud, const TileSet& tiles) {
   const perception::TileKey low = perception::tileOf(cloud.min), high = perception::tileOf(cloud.max);
-  return std::any_of(tiles.begin(), tiles.end(), [&](const perception::TileKey& tile) {
-    return tile.x >= low.x && tile.x <= high.x && tile.y >= low.y && tile.y <= high.y;
-  });
+  std::optional<perception::TileKey> lowest;
+  for (const perception::TileKey& tile : tiles) {
+    if (tile.x < low.x || tile.x > high.x || tile.y < low.y || tile.y > high.y) continue;
+    lowest = lowest ? perception::TileKey{std::min(lowest->x, tile.x), std::min(lowest->y, tile.y)} : tile;
+  }
+  return lowest;
 }
 
 /// The packed points of a scan. They stay until the next write.
@@ -189,6 +192,20 @@ TileSet PointChanges::tiles() const {
   for (const auto& [tile, points] : stored_points) all.insert(tile);
   if (copied != nullptr) all.merge(storedTiles(*copied));
   return all;
+}
+
+void PointChanges::readAnew(const rdf::ReadTransaction& transaction, bool later) {
+  if (anew.empty()) return;
+  for (const perception::TileKey& tile : anew) added[tile].clear();  // no scan may have points there
+  for (const Cloud& cloud : storedClouds(transaction)) {
+    const auto lowest = lowestBelow(cloud, anew);
+    if (!lowest) continue;
+    if (later)
+      scans_anew.emplace(cloud.id, *lowest);
+    else
+      for (auto& [tile, segment] : perception::splitScan(storedScan(transaction, cloud.id)))
+        if (anew.contains(tile)) added[tile].push_back(std::move(segment));
+  }
 }
 
 void PointChanges::add(ScanSegments segments, std::uint64_t part_points) {
@@ -267,18 +284,6 @@ TileSet removeScan(rdf::WriteTransaction& transaction, const scan::ScanId& id) {
   transaction.eraseBlock(tables::kScanPoints, tables::keyOf(id));
   transaction.eraseBlock(tables::kScans, tables::keyOf(id));
   return touched;
-}
-
-perception::TileSegments storedSegments(const rdf::ReadTransaction& transaction, const TileSet& tiles) {
-  perception::TileSegments segments;
-  for (const perception::TileKey& tile : tiles) segments[tile];
-  if (tiles.empty()) return segments;
-  for (const Cloud& cloud : storedClouds(transaction)) {
-    if (!mayTouch(cloud, tiles)) continue;
-    for (auto& [tile, segment] : perception::splitScan(storedScan(transaction, cloud.id)))
-      if (const auto found = segments.find(tile); found != segments.end()) found->second.push_back(std::move(segment));
-  }
-  return segments;
 }
 
 std::vector<ScanSegments> segmentsOfScans(const rdf::ReadTransaction& transaction, std::span<const scan::ScanId> scans,

@@ -26,6 +26,9 @@ struct PointChanges {
   /// their tiles. They are stored.
   std::map<scan::ScanId, perception::TileKey> stored;
   std::map<perception::TileKey, std::uint64_t> stored_points;  ///< how many points these have in each tile
+  /// Scans that may have points in `anew`, where these are read when the stages come to them: the lowest x and y of the
+  /// tiles. Empty where they are in `added`.
+  std::map<scan::ScanId, perception::TileKey> scans_anew;
   /// Another map with the same model and settings. All its scans were copied to this map, and its tiles come with them.
   /// Tiles that both maps have are in `anew`.
   const rdf::ReadTransaction* copied = nullptr;
@@ -37,6 +40,8 @@ struct PointChanges {
   bool hasAdded() const { return !added.empty() || !stored.empty(); }
   /// Whether there are so many points that none stays in memory, and nothing else changes.
   bool mayCommitEarly() const { return is_alone && !stored.empty(); }
+  /// Reads all points of `anew`, or notes the scans that have them when none are to stay in memory.
+  void readAnew(const rdf::ReadTransaction& transaction, bool later);
   /// Adds what a stored scan has. From one and a half times `part_points` points on, none stay in memory.
   void add(ScanSegments segments, std::uint64_t part_points);
 
@@ -72,9 +77,6 @@ bool copyScan(rdf::WriteTransaction& transaction, const rdf::ReadTransaction& ot
 
 /// Removes a scan; returns the tiles that it touched. Throws Error (NotFound) when there is none.
 TileSet removeScan(rdf::WriteTransaction& transaction, const scan::ScanId& id);
-
-/// All points of the tiles, from the stored scans. A tile in which no scan has points has no segments.
-perception::TileSegments storedSegments(const rdf::ReadTransaction& transaction, const TileSet& tiles);
 
 /// The points of these scans by tile, in their order, read on the calling thread and unpacked on up to `threads`.
 std::vector<ScanSegments> segmentsOfScans(const rdf::ReadTransaction& transaction, std::span<const scan::ScanId> scans,

@@ -20,7 +20,6 @@
 #include "mapping/strips/whole_update.hpp"
 #include "mapping/window/passed_objects.hpp"
 #include "mapping/window/window_presence.hpp"
-#include "perception/segments/summary_tile.hpp"
 #include "rules/objects/known_splits.hpp"
 
 namespace cluxel::mapping {
@@ -43,7 +42,7 @@ class GrowthUpdate {
     for (const auto& [tile, summary] : changes.former_summaries)
       if (!summary && all_.contains(tile)) new_.insert(tile);
     other_ = without(TileSet(changes.tiles), new_);
-    cluxels_ = cluxelsIn(new_) + cluxelsIn(other_);
+    cluxels_ = cluxelsIn(transaction_, new_) + cluxelsIn(transaction_, other_);
     strip_.told_clouds = former.clouds;
     strip_.keeps_lists = params_.lists_objects;
     strip_.splits = &splits_, strip_.later = &made_;
@@ -53,6 +52,13 @@ class GrowthUpdate {
   ~GrowthUpdate() { work_.stages.readAsBefore(nullptr, {}); }
 
   bool isLarge() const { return cluxels_ > params_.whole_cluxels; }
+
+  /// Most of the map changed, or lies beside what did. Strips that take tiles from one state to another hide the tiles
+  /// beside them for a while: then the whole map is decided sooner.
+  bool isMostOfMap() const {
+    const std::size_t around = perception::withRing(other_, all_).size();
+    return static_cast<double>(around) > work_.params.max_window_share * static_cast<double>(all_.size());
+  }
 
   std::optional<SemanticUpdate> run() {
     const std::vector<ContentHash> wide = wideObjects();
@@ -82,14 +88,6 @@ class GrowthUpdate {
   }
 
  private:
-  std::uint64_t cluxelsIn(const TileSet& tiles) const {
-    std::uint64_t cluxels = 0;
-    for (const TileKey& tile : tiles)
-      if (const auto block = transaction_.block(tables::kSummaries, tables::keyOf(tile)))
-        cluxels += perception::cluxelsIn(*block);
-    return cluxels;
-  }
-
   /// Shows `tiles` as they are now. Tiles beside them that are still as before would not fit: they are hidden until it
   /// is their turn.
   std::optional<SemanticUpdate> decide(const TileSet& tiles) {
@@ -201,7 +199,7 @@ std::optional<SemanticUpdate> updateByGrowth(const LayerWork& work, const Output
   if (!former || former->cluxels == 0) return std::nullopt;
   if (!isOnlyAdded(work.transaction, changes, *former)) return std::nullopt;
   GrowthUpdate growth(work, changes, *former);
-  return growth.isLarge() ? growth.run() : std::nullopt;
+  return growth.isLarge() && !growth.isMostOfMap() ? growth.run() : std::nullopt;
 }
 
 }  // namespace cluxel::mapping

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "mapping/map_tables.hpp"
+#include "perception/segments/summary_tile.hpp"
 
 namespace cluxel::mapping {
 
@@ -54,6 +55,14 @@ std::vector<TileSet> stripsOf(const TileSet& tiles, std::size_t count,
     of_strip += weights.at(tile);
   }
   return strips;
+}
+
+std::uint64_t cluxelsIn(const rdf::ReadTransaction& transaction, const TileSet& tiles) {
+  std::uint64_t cluxels = 0;
+  for (const TileKey& tile : tiles)
+    if (const auto block = transaction.block(tables::kSummaries, tables::keyOf(tile)))
+      cluxels += perception::cluxelsIn(*block);
+  return cluxels;
 }
 
 std::vector<TileSet> layerStripsOf(const rdf::ReadTransaction& transaction, const TileSet& tiles, std::uint64_t cluxels,

@@ -16,7 +16,10 @@ namespace cluxel::mapping {
 std::vector<perception::TileSet> stripsOf(const perception::TileSet& tiles, std::size_t count,
                                           const std::function<std::uint64_t(const perception::TileKey&)>& weight_of);
 
-/// The same of tiles whose layers are to be decided. They have some `cluxels`; a map of `whole_cluxels` could be
+/// How many cluxels the tiles have.
+std::uint64_t cluxelsIn(const rdf::ReadTransaction& transaction, const perception::TileSet& tiles);
+
+/// As stripsOf(), of tiles whose layers are to be decided. They have some `cluxels`; a map of `whole_cluxels` could be
 /// decided at once.
 std::vector<perception::TileSet> layerStripsOf(const rdf::ReadTransaction& transaction,
                                                const perception::TileSet& tiles, std::uint64_t cluxels,

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "base/free_memory.hpp"
 #include "mapping/clouds/scan_store.hpp"
 #include "mapping/facts/told_ways.hpp"
 #include "mapping/layers/stored_layers.hpp"
@@ -80,6 +81,7 @@ class StripUpdate {
       update.objects = decided->objects, update.cluxels = decided->cluxels, update.primitives = decided->primitives;
       for (const TileKey& tile : tiles) notePrimitives(tile);
       strip.retired = {}, strip.told_clouds = seenClouds(storedClouds(transaction_));
+      returnFreeMemory();
     }
     const auto is_there = [&](const ContentHash& id) {
       const auto record = storedRecord(transaction_, id);

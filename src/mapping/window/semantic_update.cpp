@@ -2,10 +2,12 @@
 // A change is decided around what changed; a change of most of the map is computed as a whole.
 #include "mapping/window/semantic_update.hpp"
 
+#include "mapping/clouds/scan_store.hpp"
 #include "mapping/layers/stored_layers.hpp"
 #include "mapping/map_state.hpp"
 #include "mapping/presence/object_rows.hpp"
 #include "mapping/strips/growth_update.hpp"
+#include "mapping/strips/map_strips.hpp"
 #include "mapping/strips/whole_update.hpp"
 #include "mapping/window/lent_decisions.hpp"
 #include "mapping/window/local_update.hpp"
@@ -26,6 +28,16 @@ bool hasOtherQuads(const rdf::WriteTransaction& transaction) {
   return !change || !change->added.empty() || !change->removed.empty();
 }
 
+/// Whether a window would take too much memory, while strips of the whole map take little, and not many times as long.
+bool isLarge(const LayerWork& work, const OutputChanges& changes) {
+  constexpr double kLargeShare = 0.3;  // of the tiles, with those beside them
+  if (!work.params.is_first_of_commit || !canBeInStrips(work)) return false;
+  const perception::TileSet all = storedTiles(work.transaction);
+  const std::size_t around = perception::withRing(changes.tiles, all).size();
+  return static_cast<double>(around) > kLargeShare * static_cast<double>(all.size()) &&
+         cluxelsIn(work.transaction, changes.tiles) > work.params.whole_cluxels;
+}
+
 }  // namespace
 
 IsInBoth keptBy(const rdf::ReadTransaction& transaction, const SemanticUpdate& update) {
@@ -43,8 +55,10 @@ SemanticUpdate updateSemanticLayer(rdf::WriteTransaction& transaction, const Par
   OutputChanges changes = stages.takeChanges();
   if (inputs == ChangedInputs::Inference)
     if (auto update = updateInference(work, changes)) return *std::move(update);
-  if (inputs == ChangedInputs::Scans)
+  if (inputs == ChangedInputs::Scans) {
     if (auto update = updateByGrowth(work, changes)) return *std::move(update);
+    if (changes.lender == nullptr && isLarge(work, changes)) return updateAll(work, changes);
+  }
   std::optional<LentDecisions> lent;
   if (inputs == ChangedInputs::Scans && changes.lender != nullptr) {
     lent.emplace(transaction, *changes.lender);
