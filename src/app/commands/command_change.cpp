@@ -126,7 +126,7 @@ void addChange(CLI::App& app, Session& session) {
   CLI::App* retracting = app.add_subcommand("retract", "remove scans from a map");
   retracting->add_option("map", options->map, "a finished map")->required();
   retracting->add_option("clouds", options->clouds, "clouds by id (four digits or more) or file name")->required();
-  addChangeOptions(*retracting, options->change, false);
+  addChangeOptions(*retracting, options->change, true);
   onRun(*retracting, session, [options, &session] { return retract(*options, session); });
 
   CLI::App* reposing = app.add_subcommand("repose", "give scans of a map other poses, as after a loop closure");
