@@ -103,7 +103,7 @@ std::shared_ptr<LmdbEnvironment> openCopy(const fs::path& file, const Descriptor
   const MapFileHead head = readMapFileHead(bytes.get(), file);
   OpenedLmdb opened;
   opened.can_write = false;
-  opened.handle = openLmdb(copy.file(), head.file_size, MDB_RDONLY | MDB_NOLOCK);
+  opened.handle = openLmdb(copy.file(), copy.file(), head.file_size, MDB_RDONLY | MDB_NOLOCK);
   auto environment = environmentOf(file, std::move(opened), bytes, head, false);
   environment->loseName();
   known = environment;

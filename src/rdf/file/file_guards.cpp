@@ -26,23 +26,32 @@ namespace {
 
 constexpr auto kLockPatience = std::chrono::milliseconds(1500);
 constexpr auto kLockPause = std::chrono::milliseconds(10);
+/// Who repairs a lock file keeps the name for up to 3 s (see openLmdbByName()).
+constexpr auto kNamePatience = std::chrono::seconds(5);
+/// Short, so that who replaces a map comes to it between many who open it.
+constexpr auto kNamePause = std::chrono::milliseconds(2);
 /// A byte offset that is locked but never written; LMDB itself takes no lock on the map file.
 constexpr off_t kNameByte = off_t{1} << 61;
 
-void lockNameByte(int descriptor, short kind) {
+/// False when another process has the byte. True also where the file system has no such locks.
+bool tryLockNameByte(int descriptor, short kind) {
   struct flock range {};
   range.l_type = kind;
   range.l_whence = SEEK_SET;
   range.l_start = kNameByte;
   range.l_len = 1;
-  while (::fcntl(descriptor, F_OFD_SETLKW, &range) != 0 && errno == EINTR) {
-  }
+  int code = 0;
+  do code = ::fcntl(descriptor, F_OFD_SETLK, &range);
+  while (code != 0 && errno == EINTR);
+  return code == 0 || (errno != EAGAIN && errno != EACCES);
 }
 
 }  // namespace
 
-TemporaryFolder::TemporaryFolder() {
-  std::string name = (temporaryFolderPath() / "cluxel-XXXXXX").string();
+TemporaryFolder::TemporaryFolder() : TemporaryFolder(temporaryFolderPath()) {}
+
+TemporaryFolder::TemporaryFolder(const fs::path& parent) {
+  std::string name = (parent / "cluxel-XXXXXX").string();
   if (::mkdtemp(name.data()) != nullptr) path_ = name;
 }
 
@@ -77,12 +86,19 @@ LowDescriptors::~LowDescriptors() {
     if (taken >= 0) ::close(taken);
 }
 
-NameLock::NameLock(int descriptor, Kind kind) : descriptor_(descriptor) {
-  lockNameByte(descriptor_, kind == Kind::Opening ? F_RDLCK : F_WRLCK);
+NameLock::NameLock(int descriptor, Kind kind, const fs::path& map) : descriptor_(descriptor) {
+  const auto deadline = std::chrono::steady_clock::now() + kNamePatience;
+  while (!tryLockNameByte(descriptor_, kind == Kind::Opening ? F_RDLCK : F_WRLCK)) {
+    if (std::chrono::steady_clock::now() > deadline)
+      throw MapBusy(map,
+                    "another process has been opening or replacing the map for more than 5 s; it may be stopped: let "
+                    "it go on, or end it, and run again");
+    std::this_thread::sleep_for(kNamePause);
+  }
 }
 
 NameLock::~NameLock() {
-  lockNameByte(descriptor_, F_UNLCK);
+  tryLockNameByte(descriptor_, F_UNLCK);
 }
 
 bool tryLockAgainstWriters(int descriptor, WriteLock kind, const fs::path& file) {

@@ -33,12 +33,13 @@ class Descriptor {
   int number_;
 };
 
-/// A new folder that only this user can open, in the system's temporary folder. It is removed with its content; open
-/// descriptors keep the data.
+/// A new folder that only this user can open, in the system's temporary folder or another one. It is removed with its
+/// content; open descriptors keep the data.
 class TemporaryFolder {
  public:
   /// When the folder cannot be made, path() is empty and errno says why.
   TemporaryFolder();
+  explicit TemporaryFolder(const std::filesystem::path& parent);
   TemporaryFolder(const TemporaryFolder&) = delete;
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;
   ~TemporaryFolder();
@@ -70,12 +71,13 @@ class LowDescriptors {
   std::array<int, 3> taken_{-1, -1, -1};
 };
 
-/// A shared lock for opening a map file by its name, or an exclusive one for replacing it. Held briefly. Has no effect
-/// on file systems without such locks.
+/// A shared lock for opening a map file by its name, or an exclusive one for replacing it. Held briefly: for some
+/// renames, or while LMDB opens a file and its number is compared. Has no effect on file systems without such locks.
 class NameLock {
  public:
   enum class Kind { Opening, Replacing };
-  NameLock(int descriptor, Kind kind);
+  /// Waits up to 5 s for another process; throws MapBusy, which names `map`.
+  NameLock(int descriptor, Kind kind, const std::filesystem::path& map);
   NameLock(const NameLock&) = delete;
   NameLock& operator=(const NameLock&) = delete;
   ~NameLock();

@@ -29,7 +29,7 @@ constexpr std::chrono::milliseconds kOutdatedPatience{1500}, kOutdatedPause{10};
 class HeldName {
  public:
   explicit HeldName(const fs::path& map) : descriptor_(::open(map.c_str(), O_RDWR | O_CLOEXEC)) {
-    if (descriptor_ >= 0) lock_.emplace(descriptor_, NameLock::Kind::Replacing);
+    if (descriptor_ >= 0) lock_.emplace(descriptor_, NameLock::Kind::Replacing, map);
   }
   HeldName(const HeldName&) = delete;
   HeldName& operator=(const HeldName&) = delete;
@@ -48,6 +48,23 @@ class HeldName {
   int descriptor_;
   std::optional<NameLock> lock_;
 };
+
+/// Others wait in the meantime.
+void exchange(const fs::path& fresh, const fs::path& map) {
+  const HeldName old_name(map), fresh_name(fresh);
+  const fs::path lock = lockFileOf(map), old_lock = lock.string() + ".replaced";
+  // A lock file stores the transaction id of its map, so the new map must never be opened with the old lock file.
+  std::rename(lock.c_str(), old_lock.c_str());
+  if (old_name.mode()) (void)!::chmod(fresh.c_str(), *old_name.mode());
+  if (std::rename(fresh.c_str(), map.c_str()) != 0) {
+    const int reason = errno;
+    std::rename(old_lock.c_str(), lock.c_str());
+    throw Error(ErrorKind::StoreUnavailable,
+                fresh.string() + ": is whole, but cannot be moved to " + map.string() + ": " + std::strerror(reason));
+  }
+  std::rename(lockFileOf(fresh).c_str(), lock.c_str());  // readers of the new map are registered in its lock file
+  ::unlink(old_lock.c_str());
+}
 
 }  // namespace
 
@@ -89,20 +106,8 @@ WriteTransaction writeMap(const fs::path& map, std::chrono::milliseconds patienc
 
 void replaceMapFile(const fs::path& fresh, const fs::path& map) {
   const LowDescriptors low;
-  const HeldName old_name(map), fresh_name(fresh);
-  const fs::path lock = lockFileOf(map), old_lock = lock.string() + ".replaced";
-  // A lock file stores the transaction id of its map, so the new map must never be opened with the old lock file.
-  std::rename(lock.c_str(), old_lock.c_str());
-  if (old_name.mode()) (void)!::chmod(fresh.c_str(), *old_name.mode());
-  if (std::rename(fresh.c_str(), map.c_str()) != 0) {
-    const int reason = errno;
-    std::rename(old_lock.c_str(), lock.c_str());
-    throw Error(ErrorKind::StoreUnavailable,
-                fresh.string() + ": is whole, but cannot be moved to " + map.string() + ": " + std::strerror(reason));
-  }
-  std::rename(lockFileOf(fresh).c_str(), lock.c_str());  // readers of the new map are registered in its lock file
-  ::unlink(old_lock.c_str());
-  syncFolderOf(map);
+  exchange(fresh, map);
+  syncFolderOf(map);  // nobody waits for the disk, which may take seconds
 }
 
 }  // namespace cluxel::rdf

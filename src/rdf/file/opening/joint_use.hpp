@@ -22,6 +22,7 @@ class JointUse {
   JointUse& operator=(const JointUse&) = delete;
   ~JointUse();
 
+  int lockFile() const { return lock_file_.get(); }  ///< its descriptor
   /// Whether some process, also this one, uses the lock file for another map.
   bool isLockFileOfOthers() const;
   /// Whether another process has the map open with this lock file.

@@ -10,6 +10,7 @@
 #include "rdf/file/file_guards.hpp"
 #include "rdf/file/lock_file.hpp"
 #include "rdf/file/map_replacement.hpp"
+#include "rdf/file/opening/descriptor_names.hpp"
 #include "rdf/file/opening/newest_commit.hpp"
 #include "rdf/file/table.hpp"
 
@@ -68,8 +69,20 @@ OpenedLmdb openWithoutLockFile(const LmdbRequest& request, const LockFile& lock)
   OpenedLmdb opened;
   opened.can_write = false;
   opened.holds_writers = true;
-  opened.handle = openLmdb(request.file, request.file_size, MDB_RDONLY | MDB_NOLOCK);
+  const fs::path name = nameOfDescriptor(request.descriptor);
+  const bool has_name = isNamed(identityOf(request.descriptor, request.file), name);
+  opened.handle = openLmdb(has_name ? name : request.file, request.file, request.file_size, MDB_RDONLY | MDB_NOLOCK);
+  if (!isOpen(opened.handle.get(), request)) return withOutcome(LmdbOutcome::Renamed);
   return opened;
+}
+
+/// LMDB locks the lock file while it opens it, and another process would wait for that without end. So they come to it
+/// one after the other, and wait here.
+EnvHandle openBesideOthers(const LmdbRequest& request, const JointUse& use) {
+  const NameLock turn(use.lockFile(), NameLock::Kind::Replacing, request.file);
+  const DescriptorNames names(request.descriptor, use.lockFile());
+  return openLmdb(names.map().empty() ? request.file : names.map(), request.file, request.file_size,
+                  request.can_write ? request.flags : MDB_RDONLY);
 }
 
 OpenedLmdb openWithLockFile(const LmdbRequest& request) {
@@ -81,8 +94,9 @@ OpenedLmdb openWithLockFile(const LmdbRequest& request) {
   if (opened.use->isLockFileOfOthers()) return withOutcome(LmdbOutcome::ForeignLockFile);
   if (request.mode == OpenMode::ReadOnly && isWrittenElsewhere(request, *opened.use))
     return withOutcome(LmdbOutcome::NeedsCopy);
-  opened.handle = openLmdb(request.file, request.file_size, request.can_write ? request.flags : MDB_RDONLY);
-  if (!isOpen(opened.handle.get(), request)) return withOutcome(LmdbOutcome::Renamed);
+  opened.handle = openBesideOthers(request, *opened.use);
+  const bool is_named = isNamed(identityOf(request.descriptor, request.file), request.file);
+  if (!is_named || !isOpen(opened.handle.get(), request)) return withOutcome(LmdbOutcome::Renamed);
   if (!hasRightNumber(request, opened)) return withOutcome(LmdbOutcome::OutdatedLockFile);
   return opened;
 }
@@ -109,7 +123,7 @@ bool setLockFileAside(const LmdbRequest& request) {
 
 }  // namespace
 
-EnvHandle openLmdb(const fs::path& file, std::uint64_t file_size, unsigned flags) {
+EnvHandle openLmdb(const fs::path& name, const fs::path& file, std::uint64_t file_size, unsigned flags) {
   int code = 0;
   for (std::size_t map_size = kMaxMapBytes; map_size >= kSmallestMap && map_size > file_size; map_size /= 2) {
     MDB_env* raw = nullptr;
@@ -118,7 +132,7 @@ EnvHandle openLmdb(const fs::path& file, std::uint64_t file_size, unsigned flags
     mdb_env_set_maxreaders(raw, kMaxReaders);
     mdb_env_set_maxdbs(raw, kTableCount);
     mdb_env_set_mapsize(raw, map_size);
-    code = mdb_env_open(raw, file.c_str(), flags | MDB_NOSUBDIR | MDB_NOTLS, 0666);
+    code = mdb_env_open(raw, name.c_str(), flags | MDB_NOSUBDIR | MDB_NOTLS, 0666);
     if (code == MDB_SUCCESS) return handle;
     if (code != ENOMEM && code != EINVAL) break;  // EINVAL: Valgrind's limit
   }
@@ -129,13 +143,13 @@ OpenedLmdb openLmdbByName(const LmdbRequest& request) {
   const FileIdentity identity = identityOf(request.descriptor, request.file);
   OpenedLmdb opened;
   {
-    const NameLock lock(request.descriptor, NameLock::Kind::Opening);  // LMDB opens the file again by its name
+    const NameLock lock(request.descriptor, NameLock::Kind::Opening, request.file);
     if (!isNamed(identity, request.file)) return withOutcome(LmdbOutcome::Renamed);
     opened = openWithLockFile(request);
     if (hasOwnLockFile(opened)) return opened;
   }
   if (request.can_write) {
-    const NameLock lock(request.descriptor, NameLock::Kind::Replacing);
+    const NameLock lock(request.descriptor, NameLock::Kind::Replacing, request.file);
     if (!isNamed(identity, request.file)) return withOutcome(LmdbOutcome::Renamed);
     opened = openWithLockFile(request);
     if (hasOwnLockFile(opened)) return opened;  // another process was faster

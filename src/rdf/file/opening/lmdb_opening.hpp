@@ -39,8 +39,10 @@ struct OpenedLmdb {
   bool holds_writers = false;  ///< has no lock file, but the writers' lock until it closes the file
 };
 
-/// Reserves as much address space as possible, so that a map does not outgrow its mapping. `file_size` in bytes.
-EnvHandle openLmdb(const std::filesystem::path& file, std::uint64_t file_size, unsigned flags);
+/// Reserves as much address space as possible, so that a map does not outgrow its mapping. `name` is what LMDB opens,
+/// and `file` what errors name. `file_size` in bytes.
+EnvHandle openLmdb(const std::filesystem::path& name, const std::filesystem::path& file, std::uint64_t file_size,
+                   unsigned flags);
 
 /// Opens the file while its name refers to it. A lock file that still serves another file, which had the name before,
 /// is set aside: its users keep it. Where that is not possible and the map is to be written, throws Error
