@@ -128,8 +128,11 @@ TEST_F(MapCompaction, LeavesAMapWithAnotherNameAloneAndTellsSo) {
   }
   EXPECT_TRUE(fs::equivalent(map, other));
   fs::remove(other);
-  compactMap(map);
+  const std::uint64_t before = fs::file_size(map);
+  const CompactedBytes bytes = compactMap(map);
   EXPECT_LT(fs::file_size(map), 8'000'000U);
+  EXPECT_EQ(bytes.before, before);
+  EXPECT_EQ(bytes.after, fs::file_size(map));
 }
 
 TEST_F(MapCompaction, LeavesAMapAloneThatHasLittleFreeSpace) {

@@ -19,18 +19,14 @@ ExitCode compact(const UpkeepOptions& options, const Session& session) {
   if (!options.output.empty() && fs::exists(options.output, ignored))
     throw Error(ErrorKind::StoreUnavailable,
                 options.output.string() + ": is there already; choose another name or remove it");
-  const auto before = fs::file_size(options.map, ignored);
-  if (options.output.empty())
-    mapping::compactMap(options.map);
-  else
-    mapping::copyCompacted(options.map, options.output);
-  const auto after = fs::file_size(options.output.empty() ? options.map : options.output);
+  const mapping::CompactedBytes bytes =
+      options.output.empty() ? mapping::compactMap(options.map) : mapping::copyCompacted(options.map, options.output);
   const fs::path& written = options.output.empty() ? options.map : options.output;
   if (session.json)
-    printJson(Json{{"file", written.string()}, {"bytes_before", before}, {"bytes_after", after}});
+    printJson(Json{{"file", written.string()}, {"bytes_before", bytes.before}, {"bytes_after", bytes.after}});
   else
-    std::printf("%s: %ju bytes before, %ju after\n", written.c_str(), static_cast<std::uintmax_t>(before),
-                static_cast<std::uintmax_t>(after));
+    std::printf("%s: %ju bytes before, %ju after\n", written.c_str(), static_cast<std::uintmax_t>(bytes.before),
+                static_cast<std::uintmax_t>(bytes.after));
   return ExitCode::Done;
 }
 

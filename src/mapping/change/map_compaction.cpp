@@ -41,6 +41,10 @@ struct stat statusOf(const fs::path& file) {
   return status;
 }
 
+std::uint64_t sizeOf(const fs::path& file) {
+  return static_cast<std::uint64_t>(statusOf(file).st_size);
+}
+
 /// The names would lead to different maps after that.
 void refuseOtherNames(const fs::path& map) {
   if (statusOf(map).st_nlink > 1)
@@ -93,8 +97,9 @@ std::optional<rdf::FreeSpace> knownSpaceOf(const fs::path& map, ProgressSink& si
 
 }  // namespace
 
-/// Locks out other writers: what they commit while the file is replaced would be lost.
-void compactMap(const fs::path& map, rdf::CopiedPages pages) {
+/// Locks out other writers: what they commit while the file is replaced would be lost. Counts the bytes while it holds
+/// the map: it may be moved away as soon as it is replaced.
+CompactedBytes compactMap(const fs::path& map, rdf::CopiedPages pages) {
   const fs::path file = withoutLinks(map), copy = copyOf(map);
   const BuildLock no_build(file);
   refuseOtherNames(map);
@@ -110,21 +115,25 @@ void compactMap(const fs::path& map, rdf::CopiedPages pages) {
   try {
     environment->compactTo(copy, pages);
     keepOwner(copy, file);
+    const CompactedBytes bytes{sizeOf(file), sizeOf(copy)};
     rdf::replaceMapFile(copy, file);
+    return bytes;
   } catch (...) {
     removeCopy(copy);
     throw;
   }
 }
 
-void copyCompacted(const fs::path& map, const fs::path& copy) {
+CompactedBytes copyCompacted(const fs::path& map, const fs::path& copy) {
   const auto environment = rdf::Environment::open(map, rdf::OpenMode::ReadOnly);
+  const std::uint64_t before = sizeOf(map);
   refuseUncommittedBuild(environment->read(), map);
   environment->compactTo(copy);
   const bool has_rest = hasEarlyCommit(rdf::Environment::open(copy, rdf::OpenMode::ReadOnly)->read());
   if (has_rest) compactMap(copy);
   std::error_code ignored;
   fs::remove(rdf::lockFileOf(copy), ignored);  // nobody else knows of the copy yet
+  return {before, sizeOf(copy)};
 }
 
 void compactIfSparse(const fs::path& map, ProgressSink& sink, double max_free_share) {

@@ -10,16 +10,21 @@
 
 namespace cluxel::mapping {
 
+/// The bytes of a file before and after.
+struct CompactedBytes {
+  std::uint64_t before = 0, after = 0;
+};
+
 /// Rewrites a map without free pages, and with full index pages when `pages` is Filled. The copy replaces it by a
 /// rename. Readers continue with the old file. The new file has the owner, group and rights of the old one. Takes the
 /// build lock; other writers wait or are refused. Throws Error (StoreUnavailable) when the map is damaged, cannot be
 /// written, or has another name (a hard link); it is then as before.
-void compactMap(const std::filesystem::path& map, rdf::CopiedPages pages = rdf::CopiedPages::Filled);
+CompactedBytes compactMap(const std::filesystem::path& map, rdf::CopiedPages pages = rdf::CopiedPages::Filled);
 
 /// Writes the same to a file that is not there yet; the map is only read. What a killed command left is not copied.
 /// Throws Error (StoreUnavailable), also for a first build that was killed before its first commit; a part of the copy
 /// may be left then.
-void copyCompacted(const std::filesystem::path& map, const std::filesystem::path& copy);
+CompactedBytes copyCompacted(const std::filesystem::path& map, const std::filesystem::path& copy);
 
 /// After a build or a merge.
 inline constexpr double kMaxFreeShare = 0.05;
