@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <map>
 #include <set>
 
 #include "base/file_bytes.hpp"
@@ -143,8 +144,66 @@ TEST_F(StatedQuads, ThatStandUnderTheNameOfAnObjectAreNotedWhenTheyAreStatedAgai
   EXPECT_EQ(loadRdfFiles(map(), {file}, {}, notes).added, 0U);
   EXPECT_THAT(notes.all, HasSubstr(remedy));
   EXPECT_THAT(update("DELETE DATA { " + kInOperator + "{ " + quad + "} }"), Not(HasSubstr("stands already")));
-  EXPECT_THAT(update("INSERT DATA { " + quad + "}"), HasSubstr("anchored to their points"));
+  EXPECT_THAT(update("INSERT DATA { " + quad + "}"),
+              HasSubstr("1 statement about an object is anchored to its points"));
   EXPECT_EQ(knownStatements(MapReader(map()).quads()).size(), 1U);
+}
+
+/// Whoever has a file of a thousand quads must find the one that is refused.
+TEST_F(StatedQuads, ThatAreRefusedAreFaultsOfTheirSourceWhichIsNamedWithTheLineAndTheSubject) {
+  const std::string before = canonicalText(map());
+  const std::string object = "<" + *objectsOf(map()).begin() + ">";
+  const std::string clx = "<" + rdf::vocabulary::clx("");
+  const std::map<std::string, std::string> refused{
+      {clx + "height> 3", "is computed by the map"},
+      {"<http://example.org/n> []", "is a blank node"},
+      {"a " + clx + "Tre>", "did you mean 'Tree'?"},
+      {"a " + clx + "Ground>", "is one object over all of the map"},
+      {"a \"Tree\"", "the map's ontology knows no class \"Tree\""},
+      {"a <http://example.org/K>", "the map's ontology knows no class <http://example.org/K>"}};
+  const fs::path fine = folder.path() / "fine.ttl", faulty = folder.path() / "faulty.ttl";
+  writeFile(fine, object + " " + kLabel + " \"fine\" .\n");
+  for (const auto& [stated, message] : refused) {
+    writeFile(faulty, "# a comment\n" + object + " " + kUnder + " 1 .\n" + object + " " + stated + " .\n");
+    StatementNotes notes;
+    try {
+      loadRdfFiles(map(), {fine, faulty}, {}, notes);
+      ADD_FAILURE() << stated << " was loaded";
+    } catch (const InputError& fault) {
+      EXPECT_EQ(fault.kind(), ErrorKind::FaultyInput);
+      EXPECT_EQ(toString(fault.diagnostics().front().location), faulty.string() + ":3");
+      EXPECT_THAT(fault.what(), testing::AllOf(HasSubstr(object), HasSubstr(message)));
+    }
+    try {
+      updateMap(map(), "INSERT DATA { " + object + " " + kUnder + " 1 ; " + stated + " }",
+                {.query = {.source_name = "mine.ru"}}, notes);
+      ADD_FAILURE() << stated << " was inserted";
+    } catch (const InputError& fault) {
+      EXPECT_EQ(fault.diagnostics().front().location.file, "mine.ru");
+      EXPECT_THAT(fault.what(), testing::AllOf(HasSubstr(object), HasSubstr(message)));
+    }
+    EXPECT_EQ(notes.all, "") << "of a change that was not made";
+  }
+  EXPECT_TRUE(canonicalText(map()) == before);
+}
+
+TEST_F(StatedQuads, OfOtherGraphsAreFaultsOfTheirFile) {
+  const fs::path file = folder.path() / "other.nq";
+  writeFile(file, "<http://e/a> <http://e/p> \"1\" .\n<http://e/a> <http://e/p> <http://e/b> <http://e/graph> .\n");
+  try {
+    loadRdfFiles(map(), {file}, {}, silence());
+    FAIL() << "it was loaded";
+  } catch (const InputError& fault) {
+    EXPECT_EQ(toString(fault.diagnostics().front().location), file.string() + ":2");
+    EXPECT_THAT(fault.what(), HasSubstr("<http://e/a> stands in graph <http://e/graph>"));
+  }
+}
+
+TEST_F(StatedQuads, AreNotWhatTheHistoryTells) {
+  EXPECT_THAT(faultOf("ADD <" + std::string(rdf::vocabulary::kGraphHistory) + "> TO <" +
+                      std::string(rdf::vocabulary::kGraphOperator) + ">"),
+              HasSubstr("of an object is computed by the map"));
+  EXPECT_TRUE(knownStatements(MapReader(map()).quads()).empty());
 }
 
 /// As a program of an earlier version left them.

@@ -93,6 +93,31 @@ TEST(RdfReader, NamesFileLineAndColumnOfFaults) {
   EXPECT_EQ(faults[0].source_line, "  x:q y:z .");
 }
 
+TEST(RdfReader, FindsTheLineOfAQuad) {
+  const std::string block = "<http://e/a> <http://e/p> \"1\" ;\n  <http://e/p> \"2\" ,\n  \"3\" .\n\n# end\n";
+  const auto lineOf = [](const RdfSource& source, const std::string& value) {
+    const SourceLocation place = placeOf(source, [&](const Quad& quad) { return quad.object.text == value; });
+    return toString(place);
+  };
+  const RdfSource source = turtle("# begin\n" + block + "<http://e/b> <http://e/p> \"4\" .\n");
+  EXPECT_EQ(lineOf(source, "1"), "test.ttl:2");
+  for (const char* value : {"2", "3"}) EXPECT_EQ(lineOf(source, value), "test.ttl:4") << "where the list ends";
+  EXPECT_EQ(lineOf(source, "4"), "test.ttl:7");
+  RdfSource xml{
+      "<rdf:RDF xmlns:rdf='http://www.w3.org/1999/02/22-rdf-syntax-ns#' xmlns:e='http://e/'>\n\n"
+      "<rdf:Description rdf:about='http://e/a'>\n<e:p>1</e:p>\n<e:p>2</e:p>\n</rdf:Description>\n</rdf:RDF>",
+      "x.rdf", RdfFormat::RdfXml, "", Term::iri("")};
+  EXPECT_EQ(lineOf(xml, "1"), "x.rdf:4");
+  EXPECT_EQ(lineOf(xml, "2"), "x.rdf:5");
+  EXPECT_EQ(lineOf(source, "5"), "");
+  for (const auto format : {RdfFormat::NTriples, RdfFormat::NQuads}) {
+    const RdfSource lines{"# begin\n<http://e/a> <http://e/p> \"1\" .\n\n<http://e/a> <http://e/p> \"2\" .\n", "lines",
+                          format, "", Term::iri("")};
+    EXPECT_EQ(lineOf(lines, "1"), "lines:2");
+    EXPECT_EQ(lineOf(lines, "2"), "lines:4");
+  }
+}
+
 TEST(RdfReader, PassesOverAByteOrderMark) {
   EXPECT_THAT(parse(turtle("\xEF\xBB\xBF<a> <b> <c> .")), testing::SizeIs(1));
   RdfSource lines{"\xEF\xBB\xBF<http://a> <http://b> \"x\" .\n", "x.nt", RdfFormat::NTriples, "", Term::iri("")};

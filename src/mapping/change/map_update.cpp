@@ -9,15 +9,18 @@
 #include "cluxel/error.hpp"
 #include "mapping/build/stage_clock.hpp"
 #include "mapping/build/work_file.hpp"
+#include "mapping/change/held_notes.hpp"
 #include "mapping/change/map_things.hpp"
 #include "mapping/facts/map_history.hpp"
 #include "mapping/facts/semantic_layer.hpp"
 #include "mapping/map_state.hpp"
 #include "mapping/statements/named_resources.hpp"
+#include "mapping/statements/refused_quad.hpp"
 #include "mapping/statements/stated_subjects.hpp"
 #include "mapping/statements/stated_values.hpp"
 #include "mapping/statements/statement_history.hpp"
 #include "rdf/file/map_replacement.hpp"
+#include "rdf/map_iris.hpp"
 #include "rdf/store/flush_poll.hpp"
 
 namespace cluxel::mapping {
@@ -46,8 +49,13 @@ bool takeNewStatements(rdf::WriteTransaction& transaction, const rules::ClassCat
   const NewStatements news = newStatements(transaction);
   std::vector<ContentHash> made;
   for (const Statement& statement : news.made) {
-    requireStatableOrDormant(statement, classes, sink);
-    requireNoWholeClass(transaction, statement);
+    const std::string iri = rdf::iriOfStatement(statement.id());
+    try {
+      requireStatableOrDormant(statement, classes, sink);
+      requireNoWholeClass(transaction, statement);
+    } catch (const Error& fault) {
+      throw RefusedQuad({Term::iri(iri), {}, {}, {}}, "the statement <" + iri + ">: " + fault.what());
+    }
     made.push_back(statement.id());
   }
   recordStatements(transaction, made, news.withdrawn, author);
@@ -79,6 +87,7 @@ void inferAfterUpdate(rdf::WriteTransaction& transaction, const std::set<rdf::Qu
 sparql::UpdateReport updateMap(const std::filesystem::path& file, const std::string& update,
                                const sparql::UpdateOptions& options, ProgressSink& sink,
                                const MapUpdateParams& params) {
+  HeldNotes notes(sink);
   const rdf::InferenceCheck check = checkOf(options.query.budget, Clock::now());
   rdf::WriteTransaction transaction = rdf::writeMap(file);
   const bool is_map = requireFinished(file, transaction);
@@ -92,11 +101,16 @@ sparql::UpdateReport updateMap(const std::filesystem::path& file, const std::str
   const sparql::UpdateReport report = runUpdate(transaction, update, options);
   if (is_map && report.inserted + report.deleted > 0) {
     const rdf::FlushPoll poll(transaction, [&check] { check(0); });
-    inferAfterUpdate(transaction, before, sink, check, params);
+    try {
+      inferAfterUpdate(transaction, before, notes, check, params);
+    } catch (const RefusedQuad& refused) {
+      throw InputError({.file = options.query.source_name}, refused.what());
+    }
     check(0);
   }
-  if (is_map) noteStandingQuads(transaction, before, sink);
+  if (is_map) noteStandingQuads(transaction, before, notes);
   transaction.commit();
+  notes.give();
   for (const Diagnostic& warning : report.warnings) sink.note(format(warning));
   return report;
 }

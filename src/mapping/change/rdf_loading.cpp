@@ -6,9 +6,11 @@
 
 #include "cluxel/error.hpp"
 #include "mapping/build/work_file.hpp"
+#include "mapping/change/held_notes.hpp"
 #include "mapping/change/map_update.hpp"
 #include "mapping/map_state.hpp"
 #include "mapping/statements/named_resources.hpp"
+#include "mapping/statements/refused_quad.hpp"
 #include "rdf/file/map_replacement.hpp"
 #include "rdf/io/rdf_io.hpp"
 #include "rdf/vocabulary.hpp"
@@ -54,26 +56,59 @@ class NewStore {
   std::shared_ptr<rdf::Environment> environment_;
 };
 
-void requireOperatorGraph(const fs::path& store, const fs::path& file, const std::string& graph) {
-  if (graph == rdf::vocabulary::kGraphOperator) return;
-  throw Error(ErrorKind::InvalidArgument, file.string() + ": has statements of graph <" + graph +
-                                              ">, but in a map only graph <" +
-                                              std::string(rdf::vocabulary::kGraphOperator) +
-                                              "> may be written; load into a store of its own, not " + store.string());
+void requireOperatorGraph(const fs::path& store, const Quad& quad) {
+  if (quad.graph.text == rdf::vocabulary::kGraphOperator) return;
+  throw RefusedQuad(quad, "<" + quad.subject.text + "> stands in graph <" + quad.graph.text +
+                              ">, but in a map only graph <" + std::string(rdf::vocabulary::kGraphOperator) +
+                              "> may be written; load into a store of its own, not " + store.string());
 }
 
-std::uint64_t loadFile(const fs::path& store, const fs::path& file, const RdfLoadParams& params, bool is_map,
-                       rdf::QuadWriter& writer) {
+rdf::RdfSource sourceOf(const fs::path& file, const RdfLoadParams& params) {
   rdf::RdfSource source = rdf::openRdfSource(file, Term::iri(params.graph));
   if (!params.base_iri.empty()) source.base_iri = params.base_iri;
+  return source;
+}
+
+std::uint64_t loadFile(const fs::path& store, const rdf::RdfSource& source, bool is_map, rdf::QuadWriter& writer) {
   if (!is_map) return loadRdf(source, writer);
   std::uint64_t count = 0;
   rdf::parseRdf(source, [&](const Quad& quad) {
-    requireOperatorGraph(store, file, quad.graph.text);
+    requireOperatorGraph(store, quad);
     writer.add(quad);
     ++count;
   });
   return count;
+}
+
+/// Names the file and the line that state what was refused. The files are read again, except for pipes.
+[[noreturn]] void failAtPlace(const RefusedQuad& refused, const std::vector<fs::path>& files,
+                              const RdfLoadParams& params) {
+  std::error_code ignored;
+  for (const fs::path& file : files) {
+    if (!fs::is_regular_file(file, ignored)) continue;
+    const SourceLocation place =
+        rdf::placeOf(sourceOf(file, params), [&](const Quad& quad) { return refused.is(quad); });
+    if (!place.file.empty()) throw InputError(place, refused.what());
+  }
+  throw InputError({.file = files.size() == 1 ? files.front().string() : ""}, refused.what());
+}
+
+/// What was loaded, and what follows from it.
+RdfLoadReport load(rdf::WriteTransaction& transaction, const fs::path& store, const std::vector<fs::path>& files,
+                   const RdfLoadParams& params, bool is_map, ProgressSink& notes) {
+  const rdf::QuadReader reader(transaction);
+  const std::uint64_t before = reader.size();
+  const std::set<rdf::QuadIds> named_before = is_map ? quadsThatNameResources(transaction) : std::set<rdf::QuadIds>();
+  RdfLoadReport report;
+  rdf::QuadWriter writer(transaction);
+  for (const fs::path& file : files) {
+    report.statements += loadFile(store, sourceOf(file, params), is_map, writer);
+    writer.flush();
+  }
+  report.added = reader.size() - before;
+  if (is_map && report.added > 0) inferAfterUpdate(transaction, named_before, notes, {}, {.operation = "load"});
+  if (is_map) noteStandingQuads(transaction, named_before, notes);
+  return report;
 }
 
 }  // namespace
@@ -86,20 +121,16 @@ RdfLoadReport loadRdfFiles(const fs::path& store, const std::vector<fs::path>& f
   const bool is_map = requireFinished(store, transaction);
   RdfLoadParams own = params;
   if (is_map && own.graph.empty()) own.graph = rdf::vocabulary::kGraphOperator;
-  const rdf::QuadReader reader(transaction);
-  const std::uint64_t before = reader.size();
-  const std::set<rdf::QuadIds> named_before = is_map ? quadsThatNameResources(transaction) : std::set<rdf::QuadIds>();
+  HeldNotes notes(sink);
   RdfLoadReport report;
-  rdf::QuadWriter writer(transaction);
-  for (const fs::path& file : files) {
-    report.statements += loadFile(store, file, own, is_map, writer);
-    writer.flush();
+  try {
+    report = load(transaction, store, files, own, is_map, notes);
+  } catch (const RefusedQuad& refused) {
+    failAtPlace(refused, files, own);
   }
-  report.added = reader.size() - before;
-  if (is_map && report.added > 0) inferAfterUpdate(transaction, named_before, sink, {}, {.operation = "load"});
-  if (is_map) noteStandingQuads(transaction, named_before, sink);
   transaction.commit();
   made.keep();
+  notes.give();
   return report;
 }
 

@@ -11,6 +11,7 @@
 #include "mapping/change/statement_change.hpp"
 #include "mapping/layers/stored_layers.hpp"
 #include "mapping/statements/named_resources.hpp"
+#include "mapping/statements/refused_quad.hpp"
 #include "mapping/statements/stated_values.hpp"
 #include "rdf/map_iris.hpp"
 
@@ -78,13 +79,13 @@ Statement statementOf(const Quad& quad, StatedObjects::Anchor anchor, const rule
   return statement;
 }
 
-/// Calls `check`, whose errors then name the subject.
+/// Calls `check`, whose errors are about what the quad states.
 template <typename Check>
 auto aboutSubject(const Quad& quad, const Check& check) {
   try {
     return check();
   } catch (const Error& fault) {
-    throw Error(fault.kind(), "what is stated of <" + quad.subject.text + ">: " + fault.what());
+    throw RefusedQuad(quad, "what is stated of <" + quad.subject.text + ">: " + fault.what());
   }
 }
 
@@ -94,8 +95,8 @@ void requireStatableOfUnknown(const Quad& quad, const rules::ClassCatalogue& cla
   if (quad.predicate.text != rdf::vocabulary::rdf("type"))
     return aboutSubject(quad, [&] { requireStatable(quad.predicate.text); });
   if (quad.object.kind == TermKind::Iri && isClassOfObjects(quad.object.text, classes))
-    throw Error(ErrorKind::NotFound, "<" + quad.subject.text + "> is no object that the map knows: its class <" +
-                                         quad.object.text + "> cannot be stated before the map has the object");
+    throw RefusedQuad(quad, "<" + quad.subject.text + "> is no object that the map knows: its class <" +
+                                quad.object.text + "> cannot be stated before the map has the object");
 }
 
 void anchorStatedObjects(rdf::WriteTransaction& transaction, const ParsedInputs& parsed,
@@ -118,8 +119,11 @@ void anchorStatedObjects(rdf::WriteTransaction& transaction, const ParsedInputs&
       unknown.insert(quad.subject.text);
       continue;
     }
-    const Statement statement =
-        aboutSubject(quad, [&] { return statementOf(quad, *std::move(anchor), parsed.rules.catalogue); });
+    const Statement statement = aboutSubject(quad, [&] {
+      Statement made = statementOf(quad, *std::move(anchor), parsed.rules.catalogue);
+      requireNoWholeClass(now, made);
+      return made;
+    });
     writer.remove(ids);
     for (const Quad& part : quadsOf(statement)) writer.add(part);
     ++anchored;
@@ -131,7 +135,9 @@ void anchorStatedObjects(rdf::WriteTransaction& transaction, const ParsedInputs&
               (unknown.size() > 1 ? " and " + std::to_string(unknown.size() - 1) + " more are" : " is") +
               " no object that this map has or had: what is stated of it changes no object, now or later, but queries "
               "find it");
-  if (anchored > 0) sink.note(std::to_string(anchored) + " statements about objects are anchored to their points");
+  if (anchored > 0)
+    sink.note(std::to_string(anchored) + (anchored == 1 ? " statement about an object is anchored to its points"
+                                                        : " statements about objects are anchored to their points"));
 }
 
 void noteStandingQuads(const rdf::ReadTransaction& transaction, const std::set<rdf::QuadIds>& before,

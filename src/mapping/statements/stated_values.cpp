@@ -6,9 +6,12 @@
 #include <array>
 #include <cmath>
 
+#include "base/nearest_name.hpp"
 #include "base/utf8.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/layers/stored_layers.hpp"
+#include "mapping/thing_history.hpp"
+#include "rdf/iri.hpp"
 #include "rdf/vocabulary.hpp"
 #include "rules/objects/finished_objects.hpp"
 
@@ -51,6 +54,10 @@ constexpr std::array<std::string_view, 32> kComputed{"confidence",
                                                      "statementEffect",
                                                      "contradictsRules"};
 
+/// What the graph `history` tells of objects. A stated one would follow the points to objects of which it is not true.
+constexpr std::array<std::string_view, 4> kHistory{"wasDerivedFrom", "wasGeneratedBy", "wasInvalidatedBy",
+                                                   "specializationOf"};
+
 /// Classes that say no more than that it is an object.
 constexpr std::array<std::string_view, 2> kAnyObject{"SpatialThing", "Object"};
 
@@ -60,8 +67,15 @@ bool isAnyObject(const std::string& iri) {
   return std::any_of(kAnyObject.begin(), kAnyObject.end(), [&](std::string_view local) { return iri == clx(local); });
 }
 
+[[noreturn]] void failUnknownClass(const std::string& iri, const rules::ClassCatalogue& classes) {
+  const std::vector<std::string> names = rules::namesOf(classes).all();
+  const std::string hint = suggestion(rdf::localName(iri), names);
+  throw Error(ErrorKind::NotFound,
+              "the map's ontology knows no class <" + iri + ">" + (hint.empty() ? "" : "; " + hint));
+}
+
 void requireClass(const std::string& iri, const rules::ClassCatalogue& classes) {
-  if (classes.find(iri) == nullptr) throw Error(ErrorKind::NotFound, "the map's ontology knows no class <" + iri + ">");
+  if (classes.find(iri) == nullptr) failUnknownClass(iri, classes);
   if (isAnyObject(iri))
     throw Error(
         ErrorKind::InvalidArgument,
@@ -89,7 +103,9 @@ void requireRegion(const RegionAnchor& region) {
 
 bool isComputed(const std::string& property) {
   return std::any_of(kComputed.begin(), kComputed.end(),
-                     [&](std::string_view local) { return property == clx(local); });
+                     [&](std::string_view local) { return property == clx(local); }) ||
+         std::any_of(kHistory.begin(), kHistory.end(),
+                     [&](std::string_view local) { return property == provenance(local); });
 }
 
 /// Of a fact.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Parses RDF with raptor: statements become quads, messages become diagnostics.
+#include <pthread.h>
 #include <raptor2.h>
 
 #include <algorithm>
@@ -10,6 +11,7 @@
 #include <vector>
 
 #include "cluxel/error.hpp"
+#include "rdf/io/quad_place.hpp"
 #include "rdf/io/rdf_faults.hpp"
 #include "rdf/io/rdf_guards.hpp"
 #include "rdf/io/rdf_io.hpp"
@@ -24,11 +26,14 @@ namespace {
 constexpr char kGeneratedPrefix[] = "~";
 
 /// Worlds that nobody uses. None is freed: that would clean up libxml2 while other threads use it. Nor are two opened
-/// at a time, which initialises it.
+/// at a time, which initialises it. A process that is forked meanwhile waits for that.
 class IdleWorlds {
  public:
   static IdleWorlds& ofProcess() {
     static auto* worlds = new IdleWorlds;  // threads may still read when the program ends
+    static const int registered = ::pthread_atfork([] { worlds->mutex_.lock(); }, [] { worlds->mutex_.unlock(); },
+                                                   [] { worlds->mutex_.unlock(); });
+    static_cast<void>(registered);
     return *worlds;
   }
 
@@ -124,6 +129,10 @@ class Reading {
   }
 
   void run();
+  /// So that line() is known: raptor does not tell the lines of XML, but takes a text in pieces.
+  void countLines() { counts_lines_ = true; }
+  /// The line, from 1, with which the quad that is taken was whole. Needs countLines().
+  std::size_t line() const;
 
   std::vector<std::pair<std::string, std::string>> prefixes;  ///< that were declared so far
 
@@ -177,6 +186,8 @@ class Reading {
   Term iriOf(raptor_uri* uri) const;
   void start();
   bool feed(const RdfPiece& piece);
+  int give(std::string_view text, bool is_end);
+  int giveLines(const RdfPiece& piece);
 
   const RdfSource& source_;
   const std::function<void(const Quad&)>& take_;
@@ -185,7 +196,9 @@ class Reading {
   Quad quad_;
   std::exception_ptr failure_;
   std::size_t lines_before_ = 0;  ///< that an earlier parser has read
-  bool is_finished_ = false;      ///< the parser has got an end, or met a fault that ends it
+  std::size_t line_ = 0;          ///< that giveLines() has given last
+  bool counts_lines_ = false;
+  bool is_finished_ = false;  ///< the parser has got an end, or met a fault that ends it
   Raptor<raptor_world> world_;
   Raptor<raptor_uri> base_;
   Raptor<raptor_parser> parser_;
@@ -232,6 +245,22 @@ void Reading::start() {
   raptor_parser_parse_start(parser_.get(), base_.get());
 }
 
+int Reading::give(std::string_view text, bool is_end) {
+  return raptor_parser_parse_chunk(parser_.get(), raptorBytes(text), text.size(), is_end ? 1 : 0);
+}
+
+int Reading::giveLines(const RdfPiece& piece) {
+  line_ = static_cast<std::size_t>(piece.first_line) - 1;
+  int code = 0;
+  for (std::string_view rest = piece.text; !rest.empty() && code == 0 && !failure_;) {
+    const std::size_t size = std::min(rest.find('\n'), rest.size() - 1) + 1;
+    ++line_;
+    code = give(rest.substr(0, size), false);
+    rest.remove_prefix(size);
+  }
+  return code;
+}
+
 /// False when no more pieces are wanted.
 bool Reading::feed(const RdfPiece& piece) {
   if (source_.format != RdfFormat::RdfXml) refuseHostileText(source_, piece);
@@ -242,10 +271,15 @@ bool Reading::feed(const RdfPiece& piece) {
     lines_before_ = static_cast<std::size_t>(piece.first_line - 1);
     start();
   }
-  const int code =
-      raptor_parser_parse_chunk(parser_.get(), raptorBytes(piece.text), piece.text.size(), is_of_lines ? 1 : 0);
+  const int code = counts_lines_ && !is_of_lines ? giveLines(piece) : give(piece.text, is_of_lines);
   is_finished_ = is_of_lines || code != 0;
   return !failure_ && (is_of_lines || code == 0);
+}
+
+std::size_t Reading::line() const {
+  if (line_ > 0) return line_;
+  raptor_locator* at = raptor_parser_get_locator(parser_.get());
+  return at == nullptr || at->line < 1 ? 0 : static_cast<std::size_t>(at->line) + lines_before_;
 }
 
 void Reading::run() {
@@ -269,6 +303,28 @@ void Reading::run() {
 void parseRdf(const RdfSource& source, const std::function<void(const Quad&)>& take) {
   if (source.format == RdfFormat::RdfXml) refuseHostileText(source, {source.text});
   Reading(source, take).run();
+}
+
+SourceLocation placeOf(const RdfSource& source, const std::function<bool(const Quad&)>& is_meant) {
+  if (source.format == RdfFormat::Turtle || source.format == RdfFormat::TriG) return placeInSentences(source, is_meant);
+  struct Found {};  // ends the reading
+  SourceLocation place;
+  const Reading* reader = nullptr;
+  const std::function<void(const Quad&)> take = [&](const Quad& quad) {
+    if (!is_meant(quad)) return;
+    place.file = source.name;
+    place.line = reader->line();
+    throw Found();
+  };
+  Reading reading(source, take);
+  reading.countLines();
+  reader = &reading;
+  if (source.format == RdfFormat::RdfXml) refuseHostileText(source, {source.text});
+  try {
+    reading.run();
+  } catch (const Found&) {
+  }
+  return place;
 }
 
 std::vector<std::pair<std::string, std::string>> prefixesIn(const RdfSource& source) {
