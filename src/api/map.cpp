@@ -10,6 +10,7 @@
 #include "api/answer_data.hpp"
 #include "api/change_values.hpp"
 #include "api/guarded_call.hpp"
+#include "api/kept_map.hpp"
 #include "api/object_query.hpp"
 #include "api/point_query.hpp"
 #include "base/installation/data_home.hpp"
@@ -19,7 +20,6 @@
 #include "mapping/change/map_merge.hpp"
 #include "mapping/change/map_update.hpp"
 #include "mapping/change/named_clouds.hpp"
-#include "mapping/newest_map.hpp"
 #include "sparql/query_engine.hpp"
 #include "sparql/syntax/parser.hpp"
 #include "tasks/explanation.hpp"
@@ -32,18 +32,19 @@ std::string_view version() {
 }
 
 struct Map::Impl {
-  explicit Impl(const std::filesystem::path& map_file) : file(map_file), map(map_file) {}
+  explicit Impl(const std::filesystem::path& map_file) : file(map_file), kept(file) {}
 
   /// What `read` gives for the newest state. Other readers wait, writers do not.
   template <typename Read>
   auto reading(const Read& read) {
     return guarded([&] {
-      const std::lock_guard lock(reading_mutex);
-      return read(map.reader());
+      KeptMap& mine = kept.get();
+      const std::lock_guard lock(mine.reading_mutex);
+      return read(mine.map.reader());
     });
   }
   rdf::QuadReader newestQuads() const {
-    return guarded([&] { return map.quads(); });
+    return guarded([&] { return kept.get().map.quads(); });
   }
   /// Runs `write` when no other thread writes through this object; `write` takes the sink of its callbacks.
   template <typename Write>
@@ -51,7 +52,7 @@ struct Map::Impl {
     WritingCall call(file, caller);
     return guarded(
         [&] {
-          std::unique_lock lock(writing_mutex, std::defer_lock);
+          std::unique_lock lock(kept.get().writing_mutex, std::defer_lock);
           // Two calls whose callbacks write each other's map would wait for each other.
           if (!call.isInCallback())
             lock.lock();
@@ -64,14 +65,13 @@ struct Map::Impl {
         &call);
   }
   void forget() {
-    const std::lock_guard lock(reading_mutex);
-    map.release();
+    KeptMap& mine = kept.get();
+    const std::lock_guard lock(mine.reading_mutex);
+    mine.map.release();
   }
 
   const std::filesystem::path file;
-  std::mutex writing_mutex;  ///< taken before the other; held while callbacks run
-  std::mutex reading_mutex;  ///< guards `map`; not held while callbacks run
-  mapping::NewestMap map;
+  const KeptMapOfProcess kept;
 };
 
 namespace {

@@ -3,6 +3,7 @@
 #include "rdf/file/environment.hpp"
 
 #include <fcntl.h>
+#include <pthread.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -40,9 +41,13 @@ struct OpenEnvironments {
   std::map<FileIdentity, std::pair<std::uint64_t, std::weak_ptr<LmdbEnvironment>>> copies;
 };
 
+/// A forked child process begins with an empty table: LMDB's registration as a reader and its locks are those of the
+/// parent, and a thread that held the mutex does not exist in the child. The parent's table is never destroyed there.
 OpenEnvironments& openEnvironments() {
-  static OpenEnvironments table;
-  return table;
+  static auto* table = new OpenEnvironments;
+  static const int registered = ::pthread_atfork(nullptr, nullptr, [] { table = new OpenEnvironments; });
+  static_cast<void>(registered);
+  return *table;
 }
 
 int openFile(const fs::path& file, OpenMode mode, bool& can_write) {
@@ -203,6 +208,7 @@ LmdbEnvironment::LmdbEnvironment(fs::path file, OpenedLmdb opened, int data_lock
       use_(std::move(opened.use)),
       handle_(std::move(opened.handle)),
       data_lock_(data_lock),
+      process_(::getpid()),
       can_write_(opened.can_write),
       values_(std::make_unique<ValueCache>()) {}
 
@@ -230,7 +236,22 @@ bool LmdbEnvironment::punchHole(std::uint64_t begin, std::uint64_t bytes) const 
   failStore(file_, errno, "free space of the map");
 }
 
+bool LmdbEnvironment::isOfParent() const {
+  return process_ != ::getpid();
+}
+
+void LmdbEnvironment::refuseParents() const {
+  if (isOfParent())
+    throw Error(ErrorKind::StoreUnavailable,
+                file_.string() + ": was opened before this process was forked; open it again in this process");
+}
+
 LmdbEnvironment::~LmdbEnvironment() {
+  if (isOfParent()) {  // a process loses its own locks on a lock file with every descriptor of it that it closes
+    static_cast<void>(handle_.release());
+    static_cast<void>(use_.release());
+    return;
+  }
   struct stat status {};
   const bool known = ::fstat(data_lock_, &status) == 0;
   OpenEnvironments& table = openEnvironments();

@@ -23,7 +23,8 @@ class WriteTransaction;
 /// AsTheyAre: pages are copied as a whole, which takes about a tenth of the time.
 enum class CopiedPages : std::uint8_t { Filled, AsTheyAre };
 
-/// An open map file. A process opens a file once; opening it again returns the same environment. Thread-safe.
+/// An open map file. A process opens a file once; opening it again returns the same environment. Thread-safe. A forked
+/// child process opens it again: what its parent opened refuses there to read and to write.
 /// Throws Error (StoreUnavailable) with file and remedy: not a map, newer format, locked, disk full.
 class Environment : public std::enable_shared_from_this<Environment> {
  public:

@@ -107,6 +107,9 @@ class LmdbEnvironment final : public Environment {
   /// Of an own commit what was compared of the commit before, else nothing.
   std::shared_ptr<CheckedParts> checkedPartsOf(std::size_t transaction_id) const;
   bool canWrite() const { return can_write_; }
+  /// Whether this process is a forked child of the one that opened the file: it may neither read nor write with this
+  /// environment, and opens another one.
+  bool isOfParent() const;
   /// Whether read() throws LockFileOutdated now. Cost: that of read().
   bool isOutdated() const;
   void check(int code, std::string_view doing) const { checkLmdb(code, file_, doing); }
@@ -116,6 +119,7 @@ class LmdbEnvironment final : public Environment {
   void openTables();
 
  private:
+  void refuseParents() const;
   void lockAgainstProcesses();
   void requireName();
   void requireOneLockFile();
@@ -130,6 +134,7 @@ class LmdbEnvironment final : public Environment {
   std::unique_ptr<JointUse> use_;  ///< none: no lock file
   EnvHandle handle_;
   int data_lock_;
+  pid_t process_;  ///< that opened the file
   bool can_write_, has_name_ = true;
   std::atomic<bool> writing_allowed_{false};
   std::atomic<int> format_{kMapFormat};

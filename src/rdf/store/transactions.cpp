@@ -101,6 +101,7 @@ void LmdbEnvironment::openTables() {
 }
 
 ReadTransaction LmdbEnvironment::read() const {
+  refuseParents();
   auto impl = std::make_shared<ReadTransaction::Impl>();
   // The shared state is protected by a mutex.
   impl->environment = std::static_pointer_cast<LmdbEnvironment>(const_cast<LmdbEnvironment*>(this)->shared_from_this());
@@ -218,6 +219,10 @@ ReadTransaction::Impl::~Impl() {
 
 void ReadTransaction::Impl::end() {
   for (auto& draft : drafts) draft.reset();
+  if (environment && environment->isOfParent()) {  // who goes on reading, or writing
+    txn = nullptr;
+    writing = false;
+  }
   if (txn != nullptr) mdb_txn_abort(std::exchange(txn, nullptr));
   if (std::exchange(writing, false)) environment->leaveWriting();
 }

@@ -66,6 +66,7 @@ void LmdbEnvironment::requireName() {
 void LmdbEnvironment::enterWriting() {
   if (!writing_allowed_)
     throw Error(ErrorKind::StoreUnavailable, file_.string() + ": the map was opened for reading only");
+  refuseParents();
   std::unique_lock lock(writer_mutex_);
   if (writer_active_ && writer_thread_ == std::this_thread::get_id())
     throw std::logic_error("a thread cannot write in two transactions of one map at once");

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a map object keeps between its calls, and the locks of its threads.
+#pragma once
+
+#include <sys/types.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <filesystem>
+#include <memory>
+#include <mutex>
+
+#include "mapping/newest_map.hpp"
+
+namespace cluxel {
+
+struct KeptMap {
+  explicit KeptMap(const std::filesystem::path& file) : map(file) {}
+
+  const pid_t process = ::getpid();
+  std::mutex writing_mutex;  ///< taken before the other; held while callbacks run
+  std::mutex reading_mutex;  ///< guards `map`; not held while callbacks run
+  mapping::NewestMap map;
+};
+
+/// The KeptMap of the process that asks. A forked child process gets another one: a thread that held a lock, or was
+/// changing something, at that moment does not exist in the child. There the parent's one is never used or destroyed.
+class KeptMapOfProcess {
+ public:
+  explicit KeptMapOfProcess(const std::filesystem::path& file) : file_(file), kept_(new KeptMap(file)) {}
+  KeptMapOfProcess(const KeptMapOfProcess&) = delete;
+  KeptMapOfProcess& operator=(const KeptMapOfProcess&) = delete;
+  ~KeptMapOfProcess() {
+    if (const KeptMap* kept = kept_; kept->process == ::getpid()) delete kept;
+  }
+
+  /// Thread-safe. Cost: a system call.
+  KeptMap& get() const {
+    KeptMap* kept = kept_;
+    if (kept->process == ::getpid()) return *kept;
+    auto own = std::make_unique<KeptMap>(file_);
+    return kept_.compare_exchange_strong(kept, own.get()) ? *own.release() : *kept;
+  }
+
+ private:
+  const std::filesystem::path& file_;
+  mutable std::atomic<KeptMap*> kept_;
+};
+
+}  // namespace cluxel
