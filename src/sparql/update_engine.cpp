@@ -46,6 +46,7 @@ class UpdateRun {
 
  private:
   void perform(const ast::Load& load);
+  void noteNothingLoaded(const ast::Load& load, const std::string& why);
   void perform(const ast::Clear& clear) { clearTarget(clear.target); }
   void perform(const ast::Drop& drop) { clearTarget(drop.target); }
   void perform(const ast::Create& create);
@@ -129,11 +130,20 @@ std::string UpdateRun::freshPrefix() {
   }
 }
 
+/// SILENT lets the request go on, but whoever made it should know.
+void UpdateRun::noteNothingLoaded(const ast::Load& load, const std::string& why) {
+  report_.warnings.push_back({Severity::Warning,
+                              {.file = options_.query.source_name},
+                              "LOAD SILENT <" + load.source.text + "> loads nothing: " + why,
+                              "",
+                              ""});
+}
+
 void UpdateRun::perform(const ast::Load& load) {
   const Term graph = load.into.value_or(defaultGraph());
   checkWritable(graph);
   if (!options_.load) {
-    if (load.silent) return;
+    if (load.silent) return noteNothingLoaded(load, "no file is named for it");
     fail("LOAD is refused", "name the file that it reads", Remedy::NameLoadFile);
   }
   Changes changes;
@@ -142,8 +152,9 @@ void UpdateRun::perform(const ast::Load& load) {
       quad.graph = graph;
       changes.inserted.push_back({std::move(quad)});
     }
-  } catch (const Error&) {
+  } catch (const Error& fault) {
     if (!load.silent) throw;
+    noteNothingLoaded(load, fault.what());
   }
   apply(rdf::QuadReader(transaction_), changes);
 }

@@ -182,8 +182,16 @@ TEST_F(Updates, RefuseToDeleteWhatOnlyABuildWrites) {
 
 TEST_F(Updates, LoadOnlyThroughTheCallersDoor) {
   EXPECT_THROW(change("LOAD <file:///etc/passwd>"), InputError);
-  EXPECT_NO_THROW(change("LOAD SILENT <http://elsewhere/>"));
+  const std::vector<Diagnostic> warnings = change("LOAD SILENT <http://elsewhere/>").warnings;
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_THAT(warnings.front().message, HasSubstr("LOAD SILENT <http://elsewhere/> loads nothing: no file is named"));
   UpdateOptions options;
+  options.load = [](const std::string&) -> std::vector<Quad> {
+    throw Error(ErrorKind::FaultyInput, "x.ttl: no such file");
+  };
+  EXPECT_THROW(change("LOAD <http://elsewhere/>", options), Error);
+  EXPECT_THAT(change("LOAD SILENT <http://elsewhere/>", options).warnings.front().message,
+              HasSubstr("loads nothing: x.ttl: no such file"));
   options.load = [](const std::string& iri) {
     return std::vector<Quad>{{Term::iri(iri), Term::iri("http://example.org/p"), Term::integer(1), {}}};
   };
