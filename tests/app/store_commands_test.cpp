@@ -99,7 +99,7 @@ TEST_F(StoreCommands, LoadIntoAMapWritesOperatorStatementsOnly) {
   EXPECT_EQ(
       query("own.clx", "ASK { GRAPH <https://w3id.org/cluxel/graph/inferred> { <http://x/oak> a clx:Plant } }").code,
       0);
-  expectError(run("load " + in("own.clx") + " " + in("two.nq")), 2, "graph/operator> may be written");
+  expectError(run("load " + in("own.clx") + " " + in("two.nq")), 4, "graph/operator> may be written");
   expectError(run("update " + in("own.clx") + " --strict -e 'CLEAR ALL'"), 2, "only the operator");
 }
 
