@@ -1,5 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Changes give the maps that building gives; `cluxel export --canonical` compares them."""
+import os
+import signal
+import threading
+
 import numpy as np
 import pytest
 
@@ -84,3 +88,37 @@ def test_wrong_names_and_poses_are_errors(copied_map):
         copied_map.repose({copied_map.clouds()[0].id: np.zeros((3, 3))})
     with pytest.raises(cluxel.InvalidArgumentError):
         copied_map.repose({copied_map.clouds()[0].id: 2 * np.eye(4)})
+
+
+def in_child(work):
+    """The exit status of a forked process: 0 when `work` gives True. One that hangs is killed."""
+    child = os.fork()
+    if child == 0:
+        signal.alarm(60)
+        status = 1
+        try:
+            status = 0 if work() else 2
+        finally:
+            os._exit(status)
+    return os.waitpid(child, 0)[1]
+
+
+def test_a_forked_process_goes_on_with_the_maps_of_its_parent(copied_map):
+    things, is_over = len(copied_map.objects()), threading.Event()
+
+    def write():
+        number = 0
+        while not is_over.is_set():
+            number += 1
+            copied_map.update(f"INSERT DATA {{ <http://e/{number}> <http://e/p> 1 }}")
+
+    writer = threading.Thread(target=write)
+    writer.start()
+    try:
+        for _ in range(6):
+            assert in_child(lambda: len(copied_map.objects()) == things) == 0
+    finally:
+        is_over.set()
+        writer.join()
+    assert in_child(lambda: copied_map.update("INSERT DATA { <http://e/c> <http://e/child> 1 }").inserted == 1) == 0
+    assert copied_map.query("ASK { <http://e/c> <http://e/child> 1 }")
