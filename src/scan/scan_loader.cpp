@@ -83,11 +83,9 @@ ParsedScan parseScan(std::string_view bytes, ScanFormat format, const std::strin
   refuseFile(file, "has an unknown format");
 }
 
-LoadedScan loadScan(const ScanFile& file) {
-  ParsedScan parsed = parseScan(readFile(file.path), file.format, file.path.string());
+Scan scanOf(const ScanFile& file, ParsedScan& parsed) {
   toMetresZUp(parsed.points, file.frame);
-  LoadedScan loaded;
-  Scan& scan = loaded.scan;
+  Scan scan;
   scan.T_map_sensor = poseOf(file, parsed);
   scan.has_pose = file.has_pose;
   scan.time_s = toMicroseconds(file.time_s);  // as all later layers write and compare it
@@ -96,7 +94,14 @@ LoadedScan loadScan(const ScanFile& file) {
   scan.points = std::move(parsed.points);
   requireInMapRange(scan);
   scan.id = contentIdOf(scan);
-  loaded.reading = {scan.source, parsed.no_return.size(), parsed.ignored_fields, frameDoubtsOf(scan)};
+  return scan;
+}
+
+LoadedScan loadScan(const ScanFile& file) {
+  ParsedScan parsed = parseScan(readFile(file.path), file.format, file.path.string());
+  LoadedScan loaded;
+  loaded.scan = scanOf(file, parsed);
+  loaded.reading = {loaded.scan.source, parsed.no_return.size(), parsed.ignored_fields, frameDoubtsOf(loaded.scan)};
   return loaded;
 }
 

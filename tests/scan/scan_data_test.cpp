@@ -132,7 +132,7 @@ TEST(RealScans, SydneyHasTheObjectsOfItsTable) {
   for (const auto& entry : fs::directory_iterator(folder)) {
     if (entry.path().extension() != ".ply") continue;
     const Scan scan = opened(entry.path()).load(0);
-    const auto instances = instancesFromFile(entry.path(), map.instanceField(), scan.points.size());
+    const auto instances = instancesFromFile(scan, map.instanceField());
     std::map<std::int32_t, std::uint32_t> label_of;
     for (std::size_t i = 0; i < instances.size(); ++i)
       if (instances[i] >= 0) label_of.emplace(instances[i], scan.points.label[i]);

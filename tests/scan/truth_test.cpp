@@ -7,6 +7,7 @@
 #include <random>
 
 #include "scan/scan_fixture.hpp"
+#include "scan/scan_set.hpp"
 #include "scan/truth/truth_parsers.hpp"
 
 namespace cluxel::scan {
@@ -131,23 +132,62 @@ std::string numberedPly(const std::string& last_number) {
          last_number + "\n";
 }
 
+Scan scanOf(const std::filesystem::path& file, const ScanSetParams& params = {}) {
+  ProgressSink silent;
+  return ScanSet::open({file}, params, silent).load(0);
+}
+
 TEST(InstancesFromFile, AreTheFieldOfTheScansPoints) {
   const ScratchFolder folder;
+  const Scan scan = scanOf(folder.write("scan.ply", numberedPly("0")));
+  EXPECT_THAT(instancesFromFile(scan, "number"), ElementsAre(7, -1, 0)) << "the record without a return is no point";
+  EXPECT_THAT(instancesFromFile(scan, "label"), ElementsAre(9, 8, 7));
+}
+
+TEST(InstancesFromFile, AreThoseOfAScanInAnyUnitAndPlace) {
+  const ScratchFolder folder;
   const auto file = folder.write("scan.ply", numberedPly("0"));
-  EXPECT_THAT(instancesFromFile(file, "number", 3), ElementsAre(7, -1, 0)) << "the record without a return is no point";
-  EXPECT_THAT(instancesFromFile(file, "label", 3), ElementsAre(9, 8, 7));
+  for (const UpAxis up : {UpAxis::Z, UpAxis::Y})
+    for (const LengthUnit unit : {LengthUnit::Metre, LengthUnit::Centimetre, LengthUnit::Millimetre, LengthUnit::Foot,
+                                  LengthUnit::UsSurveyFoot})
+      EXPECT_THAT(instancesFromFile(scanOf(file, {.poses = {}, .frame = {unit, up}}), "number"), ElementsAre(7, -1, 0))
+          << nameOf(unit);
+  // Points far from the origin are kept beside a local one: in the map it is part of the pose, or of the points.
+  std::string far = numberedPly("0");
+  for (const char* point : {"0 0 0 9 7", "1 0 0 8 -1", "2 0 0 7 0"}) far.insert(far.find(point), "50000");
+  const auto place = folder.write("place.ply", far);
+  EXPECT_THAT(instancesFromFile(scanOf(place), "number"), ElementsAre(7, -1, 0));
+  ScanSetParams posed;
+  posed.poses = folder.write("poses.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n");
+  posed.frame.unit = LengthUnit::Millimetre;
+  EXPECT_THAT(instancesFromFile(scanOf(place, posed), "number"), ElementsAre(7, -1, 0));
 }
 
 TEST(InstancesFromFile, RefusesWhatDoesNotFitTheMap) {
   const ScratchFolder folder;
-  const auto file = folder.write("scan.ply", numberedPly("3000000000"));
-  EXPECT_THAT(refusalOf([&] { instancesFromFile(file, "number", 3); }), HasSubstr("holds 3000000000"));
-  EXPECT_THAT(refusalOf([&] { instancesFromFile(file, "label", 4); }),
-              HasSubstr("3 points where the map's scan has 4"));
-  EXPECT_THAT(refusalOf([&] { instancesFromFile(file, "numbers", 3); }), HasSubstr("has no field 'numbers'"));
-  EXPECT_THAT(refusalOf([&] { instancesFromFile(folder.path() / "b.ply", "n", 3); }), HasSubstr("is not there"));
-  EXPECT_THAT(refusalOf([&] { instancesFromFile(folder.write("a.xyz", "0 0 0\n"), "n", 1); }),
+  Scan scan = scanOf(folder.write("scan.ply", numberedPly("3000000000")));
+  EXPECT_THAT(refusalOf([&] { instancesFromFile(scan, "number"); }), HasSubstr("holds 3000000000"));
+  EXPECT_THAT(refusalOf([&] { instancesFromFile(scan, "numbers"); }), HasSubstr("has no field 'numbers'"));
+  scan.points.x.push_back(0);
+  EXPECT_THAT(refusalOf([&] { instancesFromFile(scan, "label"); }), HasSubstr("3 points where the map's scan has 4"));
+  scan.source = folder.path() / "b.ply";
+  EXPECT_THAT(refusalOf([&] { instancesFromFile(scan, "n"); }), HasSubstr("is not there"));
+  EXPECT_THAT(refusalOf([&] { instancesFromFile(scanOf(folder.write("a.xyz", "0 0 0\n")), "n"); }),
               HasSubstr("is no PLY file"));
+}
+
+TEST(InstancesFromFile, RefusesAFileThatHoldsAnotherScanNow) {
+  const ScratchFolder folder;
+  const Scan scan = scanOf(folder.write("scan.ply", numberedPly("0")));
+  std::string other = numberedPly("0");
+  other.replace(other.find("1 0 0 8"), 7, "3 0 0 8");
+  std::string reordered = numberedPly("0");
+  const std::size_t body = reordered.find("0 0 0 9 7\n");
+  reordered.erase(body, 10).append("0 0 0 9 7\n");
+  for (const std::string& text : {other, reordered}) {
+    folder.write("scan.ply", text);
+    EXPECT_THAT(refusalOf([&] { instancesFromFile(scan, "number"); }), HasSubstr("holds another scan now")) << text;
+  }
 }
 
 TEST(TruthFromLabels, LooksUpEachPointAndAddsClassesItDoesNotKnow) {

@@ -4,6 +4,7 @@
 
 #include "base/file_bytes.hpp"
 #include "scan/formats/ply_format.hpp"
+#include "scan/scan_loader.hpp"
 #include "scan/truth/truth.hpp"
 
 namespace cluxel::scan {
@@ -13,10 +14,35 @@ namespace {
 /// Evaluation numbers the objects of several scans one after the other.
 constexpr std::uint32_t kMaxInstances = 1'000'000;
 
+/// Whether the file holds the scan when its points are read in this frame. Throws InputError where they cannot be.
+bool isReadAs(const Scan& scan, ParsedScan parsed, const InputFrame& frame) {
+  ScanFile file;
+  file.path = scan.source;
+  file.format = ScanFormat::Ply;
+  file.frame = frame;
+  file.has_pose = scan.has_pose;
+  if (scan.has_pose) file.T_map_sensor = scan.T_map_sensor;
+  return scanOf(file, parsed).id == scan.id;
+}
+
+/// Whether what the file holds was measured as the scan was. A map keeps neither unit nor axes of its inputs: all are
+/// tried, metres with z up first.
+bool holds(const ParsedScan& parsed, const Scan& scan) {
+  for (const UpAxis up : {UpAxis::Z, UpAxis::Y})
+    for (const LengthUnit unit : {LengthUnit::Metre, LengthUnit::Centimetre, LengthUnit::Millimetre, LengthUnit::Foot,
+                                  LengthUnit::UsSurveyFoot})
+      try {
+        if (isReadAs(scan, parsed, {unit, up})) return true;
+      } catch (const InputError&) {
+        continue;  // so far away in this unit that no map has it
+      }
+  return false;
+}
+
 }  // namespace
 
-std::vector<std::int32_t> instancesFromFile(const std::filesystem::path& file, const std::string& field,
-                                            std::size_t point_count) {
+std::vector<std::int32_t> instancesFromFile(const Scan& scan, const std::string& field) {
+  const std::filesystem::path file = scan.source;
   const std::string remedy = "run where the scan's file has the path that the map was built with";
   if (!std::filesystem::exists(file))
     throw InputError({.file = file.string()}, "is not there; its field '" + field + "' numbers the objects", remedy);
@@ -25,11 +51,17 @@ std::vector<std::int32_t> instancesFromFile(const std::filesystem::path& file, c
                      "use a folder of truth files");
   const ParsedScan parsed = parsePly(readFile(file), file.string(), field);
   const std::vector<std::uint32_t>& numbers = parsed.points.label;
-  if (numbers.size() != point_count)
-    throw InputError(
-        {.file = file.string()},
-        "has " + std::to_string(numbers.size()) + " points where the map's scan has " + std::to_string(point_count),
-        remedy);
+  if (numbers.size() != scan.points.size())
+    throw InputError({.file = file.string()},
+                     "has " + std::to_string(numbers.size()) + " points where the map's scan has " +
+                         std::to_string(scan.points.size()),
+                     remedy);
+  if (!holds(parsed, scan))
+    throw InputError({.file = file.string()},
+                     "holds another scan now than the one that the map read from it, or its points in another order; "
+                     "its field '" +
+                         field + "' does not number the objects of the map's scan",
+                     remedy);
   std::vector<std::int32_t> instances;
   instances.reserve(numbers.size());
   for (const std::uint32_t number : numbers) {

@@ -75,10 +75,10 @@ std::vector<std::string> truthClassNames(const LabelMap& map);
 /// Truth from the scan's own labels through a label map, without instances.
 PointTruth truthFromLabels(const Scan& scan, const LabelMap& map);
 
-/// The numbers of objects that the field `field` of a PLY file gives its points, in the scan's point order; -1: none. A
-/// map does not keep them. Throws InputError when the file is not there, is no PLY file, or does not fit.
-std::vector<std::int32_t> instancesFromFile(const std::filesystem::path& file, const std::string& field,
-                                            std::size_t point_count);
+/// The numbers of objects that the field `field` of the scan's PLY file gives its points, in the scan's point order;
+/// -1: none. A map does not keep them. Throws InputError when the file is not there, is no PLY file, or holds another
+/// scan now. Cost: the file is read, and its points are hashed.
+std::vector<std::int32_t> instancesFromFile(const Scan& scan, const std::string& field);
 
 /// Truth from a folder of files with one line `primitive object instance` per point, plain or gzip; the file of a scan
 /// has the scan file's stem followed by ".truth", ".truth.gz". Throws InputError naming file and line.

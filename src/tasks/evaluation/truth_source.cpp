@@ -68,8 +68,7 @@ scan::PointTruth TruthSource::truthOf(const scan::Scan& scan) const {
     throw InputError({.file = scan.source}, "has no labels, so a label map gives no truth",
                      "name a folder of truth files", Remedy::NameTruth);
   scan::PointTruth truth = truthFromLabels(scan, labels_);
-  if (!labels_.instanceField().empty())
-    truth.instance = scan::instancesFromFile(scan.source, labels_.instanceField(), scan.points.size());
+  if (!labels_.instanceField().empty()) truth.instance = scan::instancesFromFile(scan, labels_.instanceField());
   return truth;
 }
 
