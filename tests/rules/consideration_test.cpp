@@ -28,7 +28,7 @@ std::string saidBy(const std::vector<Consideration>& said) {
       words +=
           "  " + step.test + " " + std::to_string(step.measured.value_or(-1)) + (step.passed ? " yes" : " no") + "\n";
     for (const DecisionFlip& flip : decision.flips)
-      words += "  flip " + std::to_string(flip.node) + " " + std::to_string(flip.step) +
+      words += "  flip " + flip.changes.at(0).test + " " + std::to_string(flip.changes.size()) +
                (flip.accepted ? " accepted " : " ") + flip.outcome + "\n";
   }
   return words;

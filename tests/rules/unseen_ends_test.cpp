@@ -166,6 +166,28 @@ TEST(UnseenEnd, DoesNotDependOnTheOrderOfViewsAndBoxes) {
   }
 }
 
+TEST(UnseenEnd, OfALowerThingWouldStillBeUnseen) {
+  const RuleSet rules = rulesOf("[clx:StreetLamp]", R"(
+  - id: lamp
+    class: clx:StreetLamp
+    seed: { label: column }
+    tree:
+      test: top >= 1.9 m
+      yes: { accept: { confidence: 0.9 } }
+      unseen: { accept: { confidence: 0.7 } }
+      no: { reject: too low }
+)");
+  for (const bool shown : {true, false}) {
+    const BuiltBoxScene built = sceneOfBoxes(poleSeen(2.35, {shown ? kUnlimited : kUpToTwoDegrees}));
+    const ReasoningResult result = reason(built.scene, rules);
+    ASSERT_EQ(result.objects.size(), 1u);
+    const Explanation explanation = explain(built.scene, rules, {}, result.decisions.front().seed);
+    ASSERT_EQ(explanation.decisions.size(), 1u);
+    EXPECT_EQ(explanation.decisions.front().counterfactual.has_value(), shown)
+        << "a top of 1.9 m that no scan shows is accepted, too";
+  }
+}
+
 TEST(UnseenEnd, IsToldByExplanations) {
   const BuiltBoxScene built = sceneOfBoxes(poleSeen(2.35, {kUpToTwoDegrees}));
   const RuleSet rules = rulesOfPoles("top >= 4 m");

@@ -192,7 +192,7 @@ class Competition {
 
   std::string reasonOfDefeat(const Decision& decision) const {
     const RivalNote* winner = lostTo(decision);
-    if (winner == nullptr) return "the evidence speaks against it";
+    if (winner == nullptr) return kAgainstEvidence;
     return "the evidence for " + state_.rules.shorten(winner->class_iri) + " is stronger";
   }
 

@@ -4,6 +4,9 @@
 
 #include <algorithm>
 
+#include "rules/decide/counterfactuals.hpp"
+#include "rules/propose/changed_values.hpp"
+#include "rules/propose/condition_eval.hpp"
 #include "rules/propose/evidence.hpp"
 
 namespace cluxel::rules {
@@ -21,11 +24,11 @@ class Judging {
     WalkResult walk = walkTree(state_, rule_, seed);
     Verdict verdict;
     verdict.decision = describeSeed(seed);
-    if (isProbed(verdict.decision)) verdict.decision.flips = flipsOf(seed, walk);
-    verdict.decision.path = std::move(walk.path);
     verdict.decision.leaf = walk.leaf;
     verdict.members = membersOf(walk.bindings);
     describeOutcome(walk, verdict);
+    if (isProbed(verdict.decision)) verdict.decision.flips = flipsOf(seed, walk, verdict);
+    verdict.decision.path = std::move(walk.path);
     verdict.bindings = std::move(walk.bindings);
     verdict.related = walk.related;
     verdict.trace = traceOf(verdict);
@@ -113,17 +116,58 @@ class Judging {
     return text;
   }
 
-  std::vector<DecisionFlip> flipsOf(const Candidate& seed, const WalkResult& walk) const {
+  /// Rivals are left aside: they are asked when all candidates are known.
+  bool isAgainstEvidence(const AcceptLeaf& accept, const Bindings& bindings, double log_odds) const {
+    const auto& strata = state_.rules.strata;
+    const bool competes = !rule_.leftovers && std::any_of(strata.begin(), strata.end(), [this](const auto& stratum) {
+      return stratum.size() > 1 && std::find(stratum.begin(), stratum.end(), rule_.class_iri) != stratum.end();
+    });
+    return log_odds <= (competes ? logOddsOfNothing(state_, accept, bindings).as_one : kMinLogOdds);
+  }
+
+  /// Whether a seed of one fragment is still one with the changed values. Seeds are chosen one by one, before they are
+  /// grouped and measured together.
+  bool isSeed(const Candidate& seed, const ChangedValues& changed) const {
+    if (seed.fragments.size() > 1) return true;
+    Bindings bindings;
+    bindings.candidates.emplace_back(rule_.seed.name, seed);
+    if (!ConditionEvaluator(state_, rule_, bindings).allHold(rule_.seed.where)) return true;  // it was grown into one
+    bindings.changed = &changed;
+    return ConditionEvaluator(state_, rule_, bindings).allHold(rule_.seed.where);
+  }
+
+  DecisionFlip verdictWith(const Candidate& seed, const ChangedValues& changed) const {
+    DecisionFlip verdict;
+    verdict.outcome = "it is no seed of the rule";
+    if (!isSeed(seed, changed)) return verdict;
+    const WalkResult walk = walkTree(state_, rule_, seed, &changed);
+    const auto& leaf = rule_.nodes[walk.leaf].what;
+    if (const auto* reject = std::get_if<RejectLeaf>(&leaf)) {
+      verdict.outcome = reject->reason;
+      return verdict;
+    }
+    const auto& accept = std::get<AcceptLeaf>(leaf);
+    Decision weighed;
+    weigh(state_, rule_, accept, walk.bindings, weighed);
+    verdict.accepted = !isAgainstEvidence(accept, walk.bindings, weighed.log_odds);
+    verdict.outcome = verdict.accepted ? describeAccept(accept) : kAgainstEvidence;
+    return verdict;
+  }
+
+  /// One for each branch of the path, as far as the rule would then say the opposite. A find is turned by no value.
+  std::vector<DecisionFlip> flipsOf(const Candidate& seed, const WalkResult& walk, const Verdict& verdict) const {
+    const bool accepts =
+        verdict.accept != nullptr && !isAgainstEvidence(*verdict.accept, walk.bindings, verdict.decision.log_odds);
     std::vector<DecisionFlip> flips;
     for (const WalkedNode& walked : walk.walked) {
-      const WalkResult other = walkTree(state_, rule_, seed, walked.node);
-      DecisionFlip flip{walked.first_step, walked.step_count, walked.node, false, {}};
-      const auto& leaf = rule_.nodes[other.leaf].what;
-      if (const auto* reject = std::get_if<RejectLeaf>(&leaf)) flip.outcome = reject->reason;
-      if (const auto* accept = std::get_if<AcceptLeaf>(&leaf)) {
-        flip.accepted = true;
-        flip.outcome = describeAccept(*accept);
-      }
+      const auto* branch = std::get_if<BranchNode>(&rule_.nodes[walked.node].what);
+      const auto turns = branch ? leastTurns(branch->condition, walk.path, walked.first_step) : std::nullopt;
+      if (!turns) continue;
+      ChangedValues changed;
+      for (const TurnedTest& turn : *turns) changed.set(*turn.test, walk.bindings, turn.measured, turn.value);
+      DecisionFlip flip = verdictWith(seed, changed);
+      if (flip.accepted == accepts) continue;
+      for (const TurnedTest& turn : *turns) flip.changes.push_back(turn.change);
       flips.push_back(std::move(flip));
     }
     return flips;

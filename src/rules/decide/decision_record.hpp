@@ -20,6 +20,11 @@ struct Verdict {
 /// Walks the tree of the rule for a group of seeds and weighs the evidence when a leaf accepts.
 Verdict judge(const ReasoningState& state, const Rule& rule, const std::vector<FragmentIndex>& group);
 
+/// The reason of a rejection that the tree would not have given.
+inline constexpr const char* kAgainstEvidence = "the evidence speaks against it";
+/// A candidate without rivals is rejected when the evidence leaves it a chance below one in twenty.
+inline constexpr double kMinLogOdds = -3;
+
 /// The log-odds that the fragments which `accept` would own are no object at all.
 struct LogOddsOfNothing {
   double sum = 0;     ///< each by itself

@@ -19,9 +19,12 @@
 
 namespace cluxel::rules {
 
+class ChangedValues;
+
 /// The candidates bound to names on a path through a tree, in binding order.
 struct Bindings {
   std::vector<std::pair<std::string, Candidate>> candidates;
+  const ChangedValues* changed = nullptr;  ///< values that count instead of the measured ones; null: none
 
   const Candidate& at(const std::string& name) const;
   Candidate* find(const std::string& name);

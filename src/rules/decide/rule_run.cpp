@@ -13,9 +13,6 @@ namespace cluxel::rules {
 
 namespace {
 
-/// A candidate without rivals is rejected when the evidence leaves it a chance below one in twenty.
-constexpr double kMinLogOdds = -3;
-
 class RuleRun {
  public:
   RuleRun(ReasoningState& state, const Rule& rule)
@@ -86,7 +83,7 @@ class RuleRun {
     if (verdict.accept != nullptr && state_.context.onCandidate) state_.context.onCandidate(state_, rule_, verdict);
     if (verdict.accept != nullptr && verdict.decision.log_odds <= kMinLogOdds) {
       verdict.decision.accepted = false;
-      if (state_.context.keeps_paths) verdict.decision.reason = "the evidence speaks against it";
+      if (state_.context.keeps_paths) verdict.decision.reason = kAgainstEvidence;
       verdict.accept = nullptr;
       verdict.leaves_unknown = false;
     }

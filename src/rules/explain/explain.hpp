@@ -11,14 +11,6 @@
 
 namespace cluxel::rules {
 
-/// A change of one measured value that flips a test.
-struct NeededChange {
-  std::string test;
-  double measured = 0, threshold = 0;  ///< in `unit`: degrees for angles
-  std::string unit;
-  double margin = 0;  ///< distance of the value from the threshold, >= 0
-};
-
 /// The smallest set of changes that flips a decision by flipping one branch of the tree.
 struct Counterfactual {
   std::vector<NeededChange> changes;  ///< all of them are needed

@@ -5,21 +5,18 @@
 #include <algorithm>
 #include <map>
 
-#include "rules/explain/counterfactuals.hpp"
+#include "rules/decide/counterfactuals.hpp"
 
 namespace cluxel::rules {
 
 namespace {
 
-std::optional<Counterfactual> nearestCounterfactual(const Decision& decision, const Rule& rule) {
+std::optional<Counterfactual> nearestCounterfactual(const Decision& decision) {
   std::optional<Counterfactual> best;
   for (const DecisionFlip& flip : decision.flips) {
-    if (flip.accepted == decision.accepted) continue;
-    const auto* branch = std::get_if<BranchNode>(&rule.nodes[flip.node].what);
-    if (branch == nullptr) continue;  // a find cannot be flipped by changing one measured value
-    auto changes = counterfactualChanges(branch->condition, decision.path, flip.step);
-    if (!changes || (best && costOf(*changes) >= costOf(best->changes))) continue;
-    best = Counterfactual{std::move(*changes), flip.accepted, flip.outcome};
+    if (flip.accepted == decision.accepted) continue;  // what lost to a rival is not reversed by a rejection
+    if (best && costOf(flip.changes) >= costOf(best->changes)) continue;
+    best = Counterfactual{flip.changes, flip.accepted, flip.outcome};
   }
   return best;
 }
@@ -51,7 +48,7 @@ Explanation explanationOf(perception::PrimitiveIndex primitive, const std::vecto
   for (const std::size_t i : decisions) {
     const Decision& decision = result.decisions[i];
     const Rule* rule = rules.find(decision.rule_id);
-    explanation.decisions.push_back({decision, rule->class_iri, nearestCounterfactual(decision, *rule)});
+    explanation.decisions.push_back({decision, rule->class_iri, nearestCounterfactual(decision)});
     decided = decided || decision.accepted;
   }
   if (explanation.object && !decided) {

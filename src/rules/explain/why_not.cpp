@@ -7,7 +7,7 @@
 #include <array>
 #include <limits>
 
-#include "rules/explain/counterfactuals.hpp"
+#include "rules/decide/counterfactuals.hpp"
 
 namespace cluxel::rules {
 
@@ -29,7 +29,7 @@ class WhyNotSearch {
     else if (said.decision.accepted)
       lostTo(said.decision, verdict);
     else
-      leastChange(rule, said.decision, verdict);
+      leastChange(said.decision, verdict);
     verdict.decision = std::move(said.decision);
     return verdict;
   }
@@ -47,14 +47,12 @@ class WhyNotSearch {
     if (changes) verdict.counterfactual = Counterfactual{std::move(*changes), false, "it is a seed of the rule"};
   }
 
-  static void leastChange(const Rule& rule, const Decision& decision, RuleVerdict& verdict) {
+  static void leastChange(const Decision& decision, RuleVerdict& verdict) {
     verdict.nearness = Nearness::Rejected;
     for (const DecisionFlip& flip : decision.flips) {
-      const auto* branch = std::get_if<BranchNode>(&rule.nodes[flip.node].what);
-      if (!flip.accepted || branch == nullptr) continue;
-      auto changes = counterfactualChanges(branch->condition, decision.path, flip.step);
-      if (!changes || (verdict.counterfactual && costOf(*changes) >= costOf(verdict.counterfactual->changes))) continue;
-      verdict.counterfactual = Counterfactual{std::move(*changes), true, flip.outcome};
+      if (!flip.accepted) continue;
+      if (verdict.counterfactual && costOf(flip.changes) >= costOf(verdict.counterfactual->changes)) continue;
+      verdict.counterfactual = Counterfactual{flip.changes, true, flip.outcome};
       verdict.nearness = Nearness::Changeable;
     }
   }

@@ -51,13 +51,20 @@ struct RivalNote {
   bool won = false;
 };
 
-/// The outcome if one test on the path had the opposite result and the rest of the tree were evaluated as usual.
+/// A change of one measured value that flips a test.
+struct NeededChange {
+  std::string test;
+  double measured = 0, threshold = 0;  ///< in `unit`: degrees for angles
+  std::string unit;
+  double margin = 0;  ///< distance of the value from the threshold, >= 0
+};
+
+/// The least change of measured values that turns one branch of the path, when the rule would then say the opposite:
+/// its tree is walked and its evidence is weighed with these values.
 struct DecisionFlip {
-  std::size_t step = 0;        ///< the first of the branch's tests in Decision::path
-  std::size_t step_count = 0;  ///< how many tests of the path the branch has
-  std::size_t node = 0;        ///< the branch's number in Rule::nodes
+  std::vector<NeededChange> changes;  ///< all of them are needed
   bool accepted = false;
-  std::string outcome;  ///< the reason or description of the leaf reached then
+  std::string outcome;  ///< the reason or description of the leaf reached then, or that evidence speaks against it
 };
 
 /// Why a rule accepted or rejected a seed primitive.
@@ -75,7 +82,7 @@ struct Decision {
   std::vector<EvidenceStep> evidence;  ///< the leaf's confidence, then each line
   std::vector<RivalNote> rivals;       ///< in a stratum of several classes
   std::string hint;                    ///< a rule that may fit instead
-  std::vector<DecisionFlip> flips;     ///< only for a probed primitive
+  std::vector<DecisionFlip> flips;     ///< only for a probed primitive: what would reverse what the rule says
 };
 
 struct SemanticObject {

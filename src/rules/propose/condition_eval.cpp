@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "rdf/map_iris.hpp"
+#include "rules/propose/changed_values.hpp"
 #include "rules/propose/pair_measures.hpp"
 #include "rules/propose/unseen_ends.hpp"
 
@@ -176,7 +177,7 @@ bool ConditionEvaluator::holdsLabelShare(const Condition& condition, DecisionSte
     all += points;
     if (std::find(labels.begin(), labels.end(), state_.fragments.labelOf(fragment)) != labels.end()) labelled += points;
   }
-  step.measured = all > 0 ? labelled / all : 0;
+  step.measured = orChanged(condition, all > 0 ? labelled / all : 0);
   notes_.add(condition, bindings_.at(condition.of), *step.measured);
   step.threshold = nearerThreshold(condition, *step.measured, condition.value->value);
   return compare(condition, *step.measured, condition.value->value);
@@ -185,9 +186,16 @@ bool ConditionEvaluator::holdsLabelShare(const Condition& condition, DecisionSte
 std::optional<double> ConditionEvaluator::measured(const std::string& of, const std::optional<SliceSpec>& slice,
                                                    perception::Attribute attribute) const {
   const Candidate& candidate = bindings_.at(of);
+  if (bindings_.changed != nullptr)
+    if (const auto changed = bindings_.changed->of(candidate, slice, attribute)) return changed;
   if (!slice) return candidate.shape[attribute];
   const std::optional<Shape> shape = state_.fragments.shapeOfSlice(candidate, *slice);
   return shape ? std::optional((*shape)[attribute]) : std::nullopt;
+}
+
+double ConditionEvaluator::orChanged(const Condition& condition, double value) const {
+  if (bindings_.changed == nullptr) return value;
+  return bindings_.changed->of(condition, bindings_).value_or(value);
 }
 
 std::optional<double> ConditionEvaluator::measure(const Condition& condition, double reach) {
@@ -207,6 +215,7 @@ std::optional<double> ConditionEvaluator::measure(const Condition& condition, do
         measurePair(state_, condition.measure, bindings_.at(condition.of), bindings_.at(condition.target->name), limit);
   else if (const auto nearest = nearestTarget(condition, limit, false))
     value = nearest->second;
+  value = orChanged(condition, value);
   return std::isfinite(value) ? value : none;
 }
 
@@ -226,9 +235,10 @@ bool ConditionEvaluator::holdsPair(const Condition& condition, DecisionStep& ste
     measured =
         measurePair(state_, condition.measure, bindings_.at(condition.of), bindings_.at(condition.target->name), limit);
   } else if (const auto nearest = nearestTarget(condition, limit, compare(condition, measured, threshold))) {
-    measured = nearest->second;
+    measured = orChanged(condition, nearest->second);
     if (compare(condition, measured, threshold)) remember(nearest->first, *condition.target);
   }
+  if (std::isfinite(measured)) measured = orChanged(condition, measured);
   step.is_looked_for = condition.measure == PairMeasure::Gap || condition.measure == PairMeasure::HorizontalGap;
   if (std::isfinite(measured)) step.measured = measured;
   notes_.add(condition, bindings_.at(condition.of), step.is_looked_for ? std::min(measured, limit) : measured);
@@ -241,7 +251,7 @@ bool ConditionEvaluator::holdsRelation(const Condition& condition, DecisionStep&
   const Candidate& subject = bindings_.at(condition.of);
   if (condition.value) step.threshold = condition.value->value, step.unit = "m";
   if (condition.relation == perception::RelationKind::TouchesGround) {
-    step.measured = subject.shape[perception::Attribute::Bottom];
+    step.measured = measured(condition.of, std::nullopt, perception::Attribute::Bottom);
     step.threshold = condition.value ? condition.value->value : kGroundTolerance_m;
     step.unit = "m";
     notes_.add(condition, subject, *step.measured);
@@ -260,9 +270,9 @@ bool ConditionEvaluator::holdsRelation(const Condition& condition, DecisionStep&
     }
   }
   if (!best) return false;
-  step.measured = best->second;
-  notes_.add(condition, subject, best->second);
-  const bool passed = !condition.value || best->second <= condition.value->value;
+  step.measured = orChanged(condition, best->second);
+  notes_.add(condition, subject, *step.measured);
+  const bool passed = !condition.value || *step.measured <= condition.value->value;
   if (passed && condition.target->kind != Target::Kind::Name) remember(best->first, *condition.target);
   return passed;
 }

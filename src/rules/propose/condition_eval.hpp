@@ -37,6 +37,8 @@ class ConditionEvaluator {
   /// Absent when the candidate has no cluxel in the slice.
   std::optional<double> measured(const std::string& of, const std::optional<SliceSpec>& slice,
                                  perception::Attribute attribute) const;
+  /// `value`, or what counts instead of it (Bindings::changed).
+  double orChanged(const Condition& condition, double value) const;
   bool holdsLabelShare(const Condition& condition, DecisionStep& step);
   bool holdsPair(const Condition& condition, DecisionStep& step);
   bool holdsRelation(const Condition& condition, DecisionStep& step);

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "rules/decide/threshold_margins.hpp"
+#include "rules/propose/changed_values.hpp"
 #include "rules/propose/condition_eval.hpp"
 
 namespace cluxel::rules {
@@ -16,7 +17,10 @@ double confidenceOf(const Confidence& confidence, const Bindings& bindings) {
   if (confidence.ramps.empty()) return confidence.high;
   double sum = 0;
   for (const ConfidenceRamp& ramp : confidence.ramps) {
-    const double value = bindings.at(ramp.of).shape[ramp.attribute];
+    const Candidate& candidate = bindings.at(ramp.of);
+    double value = candidate.shape[ramp.attribute];
+    if (bindings.changed != nullptr)
+      value = bindings.changed->of(candidate, std::nullopt, ramp.attribute).value_or(value);
     sum += std::clamp((value - ramp.at_low) / (ramp.at_high - ramp.at_low), 0.0, 1.0);
   }
   const double share = sum / static_cast<double>(confidence.ramps.size());

@@ -23,8 +23,9 @@ std::string describeFind(const FindNode& find) {
 
 class Walk {
  public:
-  Walk(const ReasoningState& state, const Rule& rule, std::optional<NodeIndex> flipped)
-      : state_(state), rule_(rule), flipped_(flipped) {}
+  Walk(const ReasoningState& state, const Rule& rule, const ChangedValues* changed) : state_(state), rule_(rule) {
+    result_.bindings.changed = changed;
+  }
 
   WalkResult from(const Candidate& seed) {
     result_.bindings.candidates.emplace_back(rule_.seed.name, seed);
@@ -44,12 +45,10 @@ class Walk {
 
  private:
   NodeIndex takeBranch(NodeIndex at, const BranchNode& branch) {
-    WalkedNode walked{at, result_.path.size(), 0};
+    result_.walked.push_back({at, result_.path.size()});
     ConditionEvaluator evaluator(state_, rule_, result_.bindings);
-    const bool passed = evaluator.holds(branch.condition, &result_.path) != (flipped_ == at);
+    const bool passed = evaluator.holds(branch.condition, &result_.path);
     if (passed && evaluator.related()) result_.related = evaluator.related();
-    walked.step_count = result_.path.size() - walked.first_step;
-    result_.walked.push_back(walked);
     return passed ? branch.yes : branch.no;
   }
 
@@ -80,9 +79,9 @@ class Walk {
     step.line = rule_.nodes[at].at.line;
     step.measured = static_cast<double>(passing.size());
     step.passed = !passing.empty();
-    result_.walked.push_back({at, result_.path.size(), 1});
+    result_.walked.push_back({at, result_.path.size()});
     result_.path.push_back(std::move(step));
-    if (passing.empty() || flipped_ == at) return find.missing;
+    if (passing.empty()) return find.missing;
     const Candidate* nearest_to = find.nearest_to.empty() ? nullptr : &result_.bindings.at(find.nearest_to);
     Candidate candidate = state_.fragments.candidateOf(choose(state_, find.choose, passing, nearest_to));
     result_.bindings.candidates.emplace_back(find.name, std::move(candidate));
@@ -91,15 +90,14 @@ class Walk {
 
   const ReasoningState& state_;
   const Rule& rule_;
-  std::optional<NodeIndex> flipped_;
   WalkResult result_;
 };
 
 }  // namespace
 
 WalkResult walkTree(const ReasoningState& state, const Rule& rule, const Candidate& seed,
-                    std::optional<NodeIndex> flipped) {
-  return Walk(state, rule, flipped).from(seed);
+                    const ChangedValues* changed) {
+  return Walk(state, rule, changed).from(seed);
 }
 
 }  // namespace cluxel::rules

@@ -9,10 +9,10 @@
 
 namespace cluxel::rules {
 
-/// A branch or find on the path, with the range of its tests in WalkResult::path.
+/// A branch or find on the path, with the first of its tests in WalkResult::path.
 struct WalkedNode {
   NodeIndex node = 0;
-  std::size_t first_step = 0, step_count = 0;
+  std::size_t first_step = 0;
 };
 
 struct WalkResult {
@@ -23,8 +23,8 @@ struct WalkResult {
   std::optional<OwnerIndex> related;  ///< for merge_into: related
 };
 
-/// Evaluates the tree for `seed`. The node `flipped`, if any, takes the opposite result (for a find: missing).
+/// Evaluates the tree for `seed`, with the values of `changed`, if any, instead of the measured ones.
 WalkResult walkTree(const ReasoningState& state, const Rule& rule, const Candidate& seed,
-                    std::optional<NodeIndex> flipped = std::nullopt);
+                    const ChangedValues* changed = nullptr);
 
 }  // namespace cluxel::rules

@@ -177,19 +177,20 @@ Truth truthOfAttribute(const ReasoningState& state, const Bindings& bindings, Co
   const Truth as_measured = evaluator.holds(condition) ? Truth::Yes : Truth::No;
   if (condition.slice || !perception::isOfAnEnd(condition.attribute)) return as_measured;
   const Candidate& candidate = bindings.at(condition.of);
-  // Relative to another attribute, the threshold is compared as a share of it.
   Condition alone = condition;
+  alone.ratio_attribute.reset();
+  const auto value = evaluator.measure(alone, 0);
+  if (!value) return as_measured;
+  // Relative to another attribute, the threshold is compared as a share of it.
   double threshold = condition.value ? condition.value->value : 0;
   if (condition.ratio_attribute) {
-    alone.kind = Condition::Kind::Attribute;
     alone.of = condition.ratio_of, alone.attribute = *condition.ratio_attribute, alone.slice = condition.ratio_slice;
-    alone.ratio_attribute.reset();
     const auto other = evaluator.measure(alone, 0);
     if (!other) return as_measured;
     threshold = condition.ratio * *other;
   }
   const bool upwards = condition.attribute != Attribute::Bottom;
-  if (isSureBeyond(condition, candidate.shape[condition.attribute], threshold, upwards)) return as_measured;
+  if (isSureBeyond(condition, *value, threshold, upwards)) return as_measured;
   return isEndUnseen(state, candidate, condition.attribute) ? Truth::Unseen : as_measured;
 }
 
