@@ -26,6 +26,9 @@ struct QueryFault {
 using QueryCheck =
     std::function<std::optional<QueryFault>(const std::string& query, const std::vector<std::string>& bound)>;
 
+/// The IRIs of the classes of which a query without fault looks for things (`?x a clx:Tree`).
+using QueryClasses = std::function<std::vector<std::string>(const std::string& query)>;
+
 /// Answers the `ask:` tests from the map and the ontology. The reasoning stage calls it from one thread.
 class AskOracle {
  public:

@@ -8,6 +8,7 @@
 #include "base/installation/data_home.hpp"
 #include "mapping/facts/map_oracle.hpp"
 #include "mapping/map_inputs.hpp"
+#include "rules/language/rule_loader.hpp"
 #include "test_paths.hpp"
 
 namespace cluxel::mapping {
@@ -52,6 +53,46 @@ TEST(QueryNames, FindsVariablesThatNothingBindsWhereAFilterLooksAtThem) {
   EXPECT_THAT(faultsIn("?x a clx:Tree OPTIONAL { ?y clx:height ?h FILTER (?x != ?y) }"), IsEmpty());
   EXPECT_THAT(faultsIn("{ SELECT ?h { ?x clx:height ?h } } FILTER (?h > 1)"), IsEmpty());
   EXPECT_THAT(faultsIn("BIND (2 AS ?two) VALUES ?v { 1 } FILTER (?two > ?v)"), IsEmpty());
+}
+
+/// What is said of a rule of facades with this query; trees come after, the ground before.
+std::string saidOfAsking(const std::string& body) {
+  const std::string text = R"(
+apiVersion: cluxel.rules/v1
+ruleset: { name: test, version: 1.0.0 }
+prefixes: { clx: "https://w3id.org/cluxel/ontology#" }
+order: [clx:Barrier, [clx:Building, clx:StreetSign], clx:Tree]
+rules:
+  - id: building
+    class: clx:Building
+    seed: { label: vertical_plane }
+    tree:
+      ask: "ASK { )" + body +
+                           R"( ?x clx:hasPrimitive ?p . ?p clx:near ?seed }"
+      yes: { accept: { confidence: 0.5 } }
+      no: { reject: alone }
+)" + [] {
+                             std::string others;
+                             for (const std::string name : {"Barrier", "StreetSign", "Tree"})
+                               others += "  - { id: " + name + ", class: clx:" + name +
+                                         ", seed: { label: column }, tree: { accept: { confidence: 0.5 } } }\n";
+                             return others;
+                           }();
+  const std::vector<rules::RuleSource> sources{{"r.yaml", text}};
+  return format(loadRuleTexts(sources, 1, rules::catalogueOf(shippedOntology()), withCheckedQueries(shippedOntology()))
+                    .diagnostics);
+}
+
+TEST(QueryNames, OfClassesThatComeLaterAreWarnedOf) {
+  const std::string none_yet = "and no such object exists yet when clx:Building has its turn";
+  EXPECT_THAT(saidOfAsking("?x a clx:Tree ."),
+              HasSubstr("r.yaml:11:12: warning: the query looks for clx:Tree, " + none_yet));
+  for (const char* late : {"?x a clx:Building .", "?x a clx:StreetSign .", "FILTER NOT EXISTS { ?x a clx:Tree }",
+                           "OPTIONAL { ?x a clx:Tree }"})
+    EXPECT_THAT(saidOfAsking(late), HasSubstr(none_yet)) << late;
+  for (const char* early : {"?x a clx:Barrier .", "?x a clx:SmallObject .", "?x a clx:Object .", "?x a ?class .",
+                            "?x a clx:TreeTrunk .", "?x a <urn:other> ."})
+    EXPECT_EQ(saidOfAsking(early), "") << early;
 }
 
 TEST(QueryNames, OfTheShippedSparqlRulesAreKnown) {

@@ -65,12 +65,13 @@ rules::RuleLoadOptions withCheckedQueries(const rdf::OntologyView& ontology) {
   const rules::QueryCheck form = withCheckedQueries().check_query;
   return {.check_query = [form, ontology](const std::string& query,
                                           const std::vector<std::string>& bound) -> std::optional<rules::QueryFault> {
-    if (auto fault = form(query, bound)) return fault;
-    const sparql::ast::Query parsed = sparql::parseQuery(query);
-    const std::vector<QueryNameFault> faults = faultsOfNames(parsed, ontology, bound);
-    if (faults.empty()) return std::nullopt;
-    return rules::QueryFault{faults.front().at, faults.front().message};
-  }};
+            if (auto fault = form(query, bound)) return fault;
+            const sparql::ast::Query parsed = sparql::parseQuery(query);
+            const std::vector<QueryNameFault> faults = faultsOfNames(parsed, ontology, bound);
+            if (faults.empty()) return std::nullopt;
+            return rules::QueryFault{faults.front().at, faults.front().message};
+          },
+          .query_classes = [](const std::string& query) { return classesAskedFor(sparql::parseQuery(query)); }};
 }
 
 void MapOracle::objectsSoFar(std::span<const rules::SemanticObject> objects) {

@@ -24,8 +24,8 @@ rules::RuleLoadOptions withCheckedQueries();
 /// The same for rules that no map has yet: their queries may not name the graph of the history, either, which they do
 /// not see.
 rules::RuleLoadOptions withCheckedNewQueries();
-/// The same, and queries that name classes or properties that the ontology does not know, or look in a FILTER at what
-/// nothing binds.
+/// As withCheckedQueries(), and queries that name classes or properties that the ontology does not know, or look in a
+/// FILTER at what nothing binds. Of queries without fault it is told of which classes they look for things.
 rules::RuleLoadOptions withCheckedQueries(const rdf::OntologyView& ontology);
 
 class MapOracle : public rules::AskOracle {

@@ -28,6 +28,7 @@ class QueryNameCheck {
   }
 
   const std::optional<QueryNameFault>& history() const { return history_; }
+  const std::set<std::string>& classes() const { return classes_; }
 
   std::vector<QueryNameFault> run() {
     for (const ast::TriplePattern& triple : query_.construct_template) names(triple);
@@ -62,7 +63,9 @@ class QueryNameCheck {
     if (triple.isPath()) return pathNames(*triple.path);
     lookUp(triple.predicate, properties_, "property");
     const bool is_type = !triple.predicate.isVariable() && triple.predicate.term().text == rdf::vocabulary::rdf("type");
-    if (is_type) lookUp(triple.object, ontology_.classNames(), "class");
+    if (!is_type) return;
+    lookUp(triple.object, ontology_.classNames(), "class");
+    if (!triple.object.isVariable()) classes_.insert(triple.object.term().text);
   }
 
   void pathNames(const ast::Path& path) {
@@ -149,6 +152,7 @@ class QueryNameCheck {
   Variables bound_;
   std::vector<QueryNameFault> faults_;
   std::optional<QueryNameFault> history_;
+  std::set<std::string> classes_;
 };
 
 }  // namespace
@@ -156,6 +160,13 @@ class QueryNameCheck {
 std::vector<QueryNameFault> faultsOfNames(const ast::Query& query, const rdf::OntologyView& ontology,
                                           std::span<const std::string> bound) {
   return QueryNameCheck(query, ontology, bound).run();
+}
+
+std::vector<std::string> classesAskedFor(const ast::Query& query) {
+  const rdf::OntologyView none;
+  QueryNameCheck check(query, none, {});
+  check.run();
+  return {check.classes().begin(), check.classes().end()};
 }
 
 std::optional<QueryNameFault> historyNamedIn(const ast::Query& query) {

@@ -25,6 +25,9 @@ struct QueryNameFault {
 std::vector<QueryNameFault> faultsOfNames(const sparql::ast::Query& query, const rdf::OntologyView& ontology,
                                           std::span<const std::string> bound = {});
 
+/// The classes of which the query looks for things (`?x a clx:Tree`), in groups of every kind; each once, sorted.
+std::vector<std::string> classesAskedFor(const sparql::ast::Query& query);
+
 /// Where the query of a rule names the graph of the history, which rules do not see: what is built and when may not
 /// change what follows from the scans. A variable graph (GRAPH ?g) goes through the others.
 std::optional<QueryNameFault> historyNamedIn(const sparql::ast::Query& query);

@@ -36,6 +36,8 @@ void readQuery(const YamlNode& node, const NameScope& scope, RuleReading& readin
   if (const auto fault = reading.options.check_query(condition.query, condition.query_names))
     reading.faults.error(node.at, "the query is faulty: " + fault->message,
                          fault->offset >= prologue ? "at '" + condition.query.substr(fault->offset, 20) + "'" : "");
+  else if (reading.options.query_classes)
+    condition.query_classes = reading.options.query_classes(condition.query);
 }
 
 }  // namespace cluxel::rules

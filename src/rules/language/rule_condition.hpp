@@ -84,6 +84,7 @@ struct Condition {
   std::string class_iri;                     ///< of Class: the subject belongs to an object of that class
   std::string query;                         ///< of Ask: SPARQL with the rule set's prefixes
   std::vector<std::string> query_names;      ///< bound names that the query mentions as variables
+  std::vector<std::string> query_classes;    ///< IRIs of classes of which the query looks for things, as far as known
   std::vector<Condition> operands;           ///< of All, Any, Not, Unseen
   bool asks_rivals = false;                  ///< of Pair: the target are objects that won the first round
   /// The numbers of `value` (or `ratio`) and of `upper` in RuleSet::thresholds, from 1; 0: none.

@@ -117,10 +117,31 @@ void checkEarlier(const std::string& object_class, const SourceLocation& at, con
         "classes that a rule looks at come earlier in 'order'");
 }
 
+/// A query sees the objects of earlier strata, not those of its own. Classes that no stratum makes are left alone: they
+/// may be of parts, primitives and places, which are in the map before.
+void checkAsked(const std::string& object_class, const SourceLocation& at, const Rule& rule, const RuleSet& rules,
+                FaultList& faults) {
+  if (rule.class_iri.empty() || !rules.catalogue.isA(object_class, rdf::vocabulary::clx("Object"))) return;
+  bool is_late = false;
+  for (const std::vector<std::string>& stratum : rules.strata) {
+    const bool makes = std::any_of(stratum.begin(), stratum.end(),
+                                   [&](const auto& iri) { return rules.catalogue.isA(iri, object_class); });
+    is_late = is_late || std::find(stratum.begin(), stratum.end(), rule.class_iri) != stratum.end();
+    if (makes && !is_late) return;
+    if (makes)
+      return faults.warning(at,
+                            "the query looks for " + rules.shorten(object_class) +
+                                ", and no such object exists yet when " + rules.shorten(rule.class_iri) +
+                                " has its turn: this pattern finds nothing",
+                            "classes that a query looks for come earlier in 'order'");
+  }
+}
+
 void checkCondition(const Condition& condition, const Rule& rule, const RuleSet& rules, FaultList& faults) {
   if (condition.target && !condition.asks_rivals)
     checkEarlier(condition.target->object_class, condition.at, rule, rules, faults);
   if (!condition.asks_rivals) checkEarlier(condition.class_iri, condition.at, rule, rules, faults);
+  for (const std::string& asked : condition.query_classes) checkAsked(asked, condition.at, rule, rules, faults);
   for (const Condition& operand : condition.operands) checkCondition(operand, rule, rules, faults);
 }
 

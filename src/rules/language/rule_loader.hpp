@@ -17,8 +17,9 @@
 namespace cluxel::rules {
 
 struct RuleLoadOptions {
-  QueryCheck check_query = {};    ///< absent: the queries of `ask:` are not checked
-  bool requires_objects = false;  ///< rules of a class that is not below clx:Object are refused
+  QueryCheck check_query = {};      ///< absent: the queries of `ask:` are not checked
+  QueryClasses query_classes = {};  ///< absent: nothing warns of classes that come later than the query
+  bool requires_objects = false;    ///< rules of a class that is not below clx:Object are refused
 };
 
 struct LoadedRules {
