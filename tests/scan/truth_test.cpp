@@ -69,6 +69,18 @@ TEST(LabelMap, GivesTheMeaningOfEachId) {
   EXPECT_EQ(map.find(99), nullptr);
 }
 
+TEST(LabelMap, TakesWhateverLocalNameAnOntologyMayHave) {
+  for (const std::string name : {"StreetSign", "Straßen-Schild", "a.b", "3D_Sign", "Baum%20A"}) {
+    const LabelMap map =
+        mapOf("counts_as: {'" + name + "': '" + name + "'}\nlabels:\n  1: {name: a, object: '" + name + "'}\n");
+    EXPECT_EQ(map.find(1)->object_class, name);
+  }
+  for (const std::string name : {"a tree", "clx:Tree", "<Tree>", "town/Tree", "town#Tree", ""})
+    EXPECT_THAT(refusalOf([&] { parseLabelMap("labels:\n  1: {name: a, object: '" + name + "'}\n", "l"); }),
+                HasSubstr("object must be a local name"))
+        << name;
+}
+
 TEST(LabelMap, ReportsAllFaultsAtOnceWithPlaceAndSuggestion) {
   const std::string text = refusalOf([] {
     parseLabelMap(

@@ -18,9 +18,12 @@ const std::vector<std::string> kFileKeys{"dataset", "cite", "coverage", "instanc
 const std::vector<std::string> kLabelKeys{"name", "primitive", "object", "part", "near"};
 const std::vector<std::string> kNearKeys{"label", "within", "object"};
 
+/// What can stand in an IRI after its last '#' or '/'. A colon would be that of a prefix.
 bool isLocalName(std::string_view name) {
-  return !name.empty() && isAsciiLetter(name.front()) &&
-         std::all_of(name.begin(), name.end(), [](char c) { return isAsciiAlphanumeric(c) || c == '_' || c == '-'; });
+  return !name.empty() && std::none_of(name.begin(), name.end(), [](char c) {
+    return static_cast<unsigned char>(c) <= 0x20 || c == 0x7F ||
+           std::string_view(":#/<>\"{}|^`\\").find(c) != std::string_view::npos;
+  });
 }
 
 class LabelMapReader {
