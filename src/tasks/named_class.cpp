@@ -3,6 +3,9 @@
 // in this order.
 #include "tasks/named_class.hpp"
 
+#include <unicode/bytestream.h>
+#include <unicode/casemap.h>
+
 #include <algorithm>
 #include <vector>
 
@@ -20,9 +23,13 @@ namespace cluxel::tasks {
 
 namespace {
 
-/// Without case, blanks and what joins words.
+/// Without case in any script ("Straße" and "STRASSE" are one word), blanks and what joins words.
 std::string plainWords(std::string_view text) {
-  std::string plain = lowerCase(text);
+  std::string plain;
+  icu::StringByteSink<std::string> sink(&plain);
+  UErrorCode error = U_ZERO_ERROR;
+  icu::CaseMap::utf8Fold(0, {text.data(), static_cast<std::int32_t>(text.size())}, sink, nullptr, error);
+  if (U_FAILURE(error)) plain = lowerCase(text);
   plain.erase(std::remove_if(plain.begin(), plain.end(), [](char c) { return c == ' ' || c == '-' || c == '_'; }),
               plain.end());
   return plain;

@@ -68,6 +68,14 @@ TEST(NamedClass, IsALocalNameAnIriOrALabel) {
   EXPECT_THAT(faultOf("Treee"), HasSubstr("did you mean 'Tree'"));
 }
 
+TEST(NamedClass, IsALabelWhateverTheCaseOfItsLetters) {
+  const rdf::OntologyView view = viewOf(
+      {{clx("Building"), {{"de", "Gebäude"}}}, {clx("StreetSign"), {{"de", "Straßenschild"}}}, {kTown + "Ёлка", {}}});
+  for (const char* written : {"Gebäude", "gebäude", "GEBÄUDE"}) EXPECT_EQ(classNamed(view, written), clx("Building"));
+  EXPECT_EQ(classNamed(view, "STRASSENSCHILD"), clx("StreetSign"));
+  EXPECT_EQ(classNamed(view, "ёлКА"), kTown + "Ёлка");
+}
+
 TEST(NamedClass, OfTheVocabularyHasTheFirstRightToALocalName) {
   EXPECT_EQ(named("Tree"), clx("Tree"));
   EXPECT_EQ(named(kTown + "Tree"), kTown + "Tree");
