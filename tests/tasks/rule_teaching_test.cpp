@@ -10,8 +10,10 @@
 #include "cluxel/error.hpp"
 #include "mapping/change/statement_change.hpp"
 #include "mapping/facts/ask_replay.hpp"
+#include "mapping/facts/map_oracle.hpp"
 #include "mapping/facts/object_geometry.hpp"
 #include "rdf/vocabulary.hpp"
+#include "rules/language/rule_loader.hpp"
 #include "rules/testing/rule_test.hpp"
 #include "tasks/campus_map_fixture.hpp"
 #include "tasks/rule_reference/rule_reference.hpp"
@@ -205,6 +207,25 @@ TEST(RuleTeaching, GivesRulesOfClassesWithOneLocalNameTheirOwnNames) {
   EXPECT_EQ(
       (std::set<std::string>{own, idFor("http://t.example/town#Tree"), idFor("http://t.example/store#Tree")}).size(),
       3U);
+}
+
+TEST(RuleTeaching, WritesAClassWithoutAPrefixAsRuleFilesTakeIt) {
+  const MapReader& map = CampusMap::shared().map();
+  const RuleSet rules = parseInputs(map.inputs()).rules;
+  const ScratchFolder folder;
+  const MapInputs inputs = map.inputs();
+  for (const NamedText& own : inputs.rules)
+    writeFile(folder.path() / std::filesystem::path(own.name).filename(), own.text);
+  for (const std::string iri : {"http://t.example/town#Kiosk", "urn:x:Thing", "http://t.example/c/"}) {
+    ClassCatalogue catalogue = classCatalogueOf(inputs.ontology);
+    catalogue.classes.push_back({iri, {rdf::vocabulary::clx("Object")}, {}});
+    LessonCase lesson{0, iri, "taught.rules.yaml", {0}, {}, {}, ""};
+    writeFile(folder.path() / "taught.rules.yaml", ruleText(map, rules, lesson));
+    writeFile(folder.path() / "taught.rules-test.yaml", testText(map, rules, lesson));
+    const std::vector files{folder.path() / "taught.rules.yaml"};
+    EXPECT_EQ(loadRules(files, catalogue, withCheckedQueries()).require().find(lesson.rule_id)->class_iri, iri);
+    EXPECT_NO_THROW(runRuleTests(folder.path() / "taught.rules-test.yaml", catalogue)) << iri;
+  }
 }
 
 TEST(RuleReference, QuantilesAreThoseOfSortedValues) {

@@ -34,6 +34,12 @@ std::string scalarText(const std::string& text) {
   return quoted + "\"";
 }
 
+/// A class as rule files and rule tests take it: with its prefix, else as an IRI between < and >.
+std::string classText(const rules::RuleSet& rules, const std::string& class_iri) {
+  const std::string shortened = rules.shorten(class_iri);
+  return scalarText(shortened == class_iri ? "<" + class_iri + ">" : shortened);
+}
+
 std::string flowText(const YamlNode& node) {
   if (node.isNull()) return "null";
   if (node.isScalar()) return scalarText(node.text);
@@ -138,13 +144,12 @@ std::string includingText(const mapping::MapReader& map, const std::string& body
 std::string ruleText(const mapping::MapReader& map, const rules::RuleSet& rules, LessonCase& lesson) {
   const perception::Scene& scene = map.scene();
   const rules::SemanticObject& object = map.byRules(map.objects()[lesson.object]);
-  const std::string class_name = rules.shorten(lesson.class_iri);
+  const std::string class_name = classText(rules, lesson.class_iri);
   lesson.rule_id = "taught/" + lowerCase(distinctName(lesson.class_iri)) + "-" +
                    scene.primitives[lesson.seeds.front()].id.hex().substr(0, 8);
   std::string body;
   if (std::find(rules.order.begin(), rules.order.end(), lesson.class_iri) == rules.order.end())
-    body += "order: { insert: [ " + scalarText(class_name) +
-            " ], before: " + scalarText(rules.shorten(object.class_iri)) + " }\n";
+    body += "order: { insert: [ " + class_name + " ], before: " + classText(rules, object.class_iri) + " }\n";
   body += "rules:\n  - id: " + lesson.rule_id + "\n    class: " + class_name +
           "\n    description: Taught by one case that was taken for " + rules.shorten(object.class_iri) + ".\n" +
           "    seed: { label_in: " + labelsOf(scene, lesson) + ", as: thing" +
@@ -179,8 +184,8 @@ std::string testText(const mapping::MapReader& map, const rules::RuleSet& rules,
             ", yaw: " + numberText(primitive.box.yaw_rad * 180 / std::numbers::pi) +
             " deg },\n            attributes: { " + attributesText(primitive) + " } }\n";
   }
-  return text + "    expect: { objects: [ { class: " + scalarText(rules.shorten(lesson.class_iri)) + ", primitives: [" +
-         names + "], rule: " + lesson.rule_id + " } ] }\n";
+  return text + "    expect: { objects: [ { class: " + classText(rules, lesson.class_iri) + ", primitives: [" + names +
+         "], rule: " + lesson.rule_id + " } ] }\n";
 }
 
 }  // namespace cluxel::tasks
