@@ -12,6 +12,7 @@
 #include "base/file_bytes.hpp"
 #include "tasks/campus_map_fixture.hpp"
 #include "tasks/evaluation/evaluation.hpp"
+#include "tasks/evaluation/shared_scans.hpp"
 #include "test_paths.hpp"
 
 namespace cluxel::tasks {
@@ -137,6 +138,20 @@ TEST(MapEvaluation, OfTwoMapsAddsTheirCounts) {
   for (std::size_t i = 0; i < sum.kinds.size(); ++i) EXPECT_EQ(sum.kinds[i].truth, 2 * evaluation().kinds[i].truth);
   MapEvaluation other{ConfusionMatrix({"scatter"}), ConfusionMatrix({"Tree"}), false, {}, {}, {}};
   EXPECT_THROW(other.add(evaluation()), Error);
+}
+
+TEST(SharedScans, AreThoseThatAnEarlierMapHolds) {
+  const std::vector<Cloud> all = CampusMap::shared().map().clouds();
+  ASSERT_GE(all.size(), 2U);
+  const std::string first = all[0].id.hex(), second = all[1].id.hex();
+  SharedScans scans;
+  EXPECT_EQ(scans.add("a.clx", {all[0]}), std::nullopt);
+  EXPECT_FALSE(scans.isOfEarlierMap(first)) << "the map itself is no earlier one";
+  const auto shared = scans.add("b.clx", {all[0], all[1]});
+  ASSERT_TRUE(shared.has_value());
+  EXPECT_EQ(*shared, "b.clx: 1 of its 2 scans is in earlier maps, too (" + all[0].source + " in a.clx)");
+  EXPECT_TRUE(scans.isOfEarlierMap(first));
+  EXPECT_FALSE(scans.isOfEarlierMap(second));
 }
 
 TEST(MapEvaluation, CallsNearlyAllFoundObjectsByTheirOwnClass) {

@@ -8,6 +8,8 @@
 #include "app/shared_options.hpp"
 #include "cluxel/error.hpp"
 #include "tasks/evaluation/evaluation.hpp"
+#include "tasks/evaluation/shared_scans.hpp"
+#include "tasks/named_class.hpp"
 #include "tasks/plots/evaluation_plots.hpp"
 
 namespace cluxel::app {
@@ -63,9 +65,13 @@ tasks::MapEvaluation evaluateAll(const EvaluateOptions& options, Session& sessio
   const auto truth = tasks::TruthSource::open(options.truth, session.dataHome());
   std::optional<tasks::MapEvaluation> sum;
   std::set<std::string> doubts;  // those of several maps are mostly the same
+  tasks::SharedScans scans;
   for (const fs::path& file : options.maps) {
     const mapping::MapReader map(file);
     noteUnfinished(file, map.isFinished(), options.allow_unfinished, session);
+    if (const auto shared = scans.add(file.string(), map.clouds()))
+      session.console.note(*shared +
+                           ": they count once for each map, so the intervals are narrower than they should be");
     for (const std::string& doubt : truth.doubtfulClasses(classCatalogueOf(map.inputs().ontology)))
       if (doubts.insert(doubt).second) session.console.note(doubt);
     tasks::MapEvaluation one = evaluateMap(map, truth);

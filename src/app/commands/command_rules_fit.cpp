@@ -10,6 +10,7 @@
 #include "mapping/map_inputs.hpp"
 #include "mapping/map_reader.hpp"
 #include "rules/language/rule_loader.hpp"
+#include "tasks/evaluation/shared_scans.hpp"
 #include "tasks/evaluation/truth_source.hpp"
 #include "tasks/rule_fitting/candidate_examples.hpp"
 #include "tasks/rule_fitting/evidence_fit.hpp"
@@ -56,10 +57,19 @@ std::vector<TruthMaps> setsOf(const FitOptions& options) {
 
 std::vector<tasks::CandidateExample> collect(const FitOptions& options, const rules::RuleSet& rules, Session& session) {
   std::vector<tasks::CandidateExample> examples;
+  tasks::SharedScans scans;
   for (const TruthMaps& set : setsOf(options)) {
     const auto truth = tasks::TruthSource::open(set.truth, session.dataHome());
     for (const fs::path& file : set.maps) {
-      auto more = candidateExamples(mapping::MapReader(file), rules, truth, false);
+      const mapping::MapReader map(file);
+      const auto shared = scans.add(file.string(), map.clouds());
+      auto more = candidateExamples(map, rules, truth, false);
+      if (shared) {
+        const std::size_t left_out =
+            std::erase_if(more, [&](const auto& example) { return scans.isOfEarlierMap(example.place); });
+        session.console.note(*shared + ": " + std::to_string(left_out) +
+                             " candidates of these are left out, they count already");
+      }
       std::move(more.begin(), more.end(), std::back_inserter(examples));
     }
   }
