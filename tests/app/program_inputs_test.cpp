@@ -215,6 +215,17 @@ TEST_F(Program, ALabelMapServesSeveralMapsAndEachDoubtAboutItIsNotedOnce) {
   const std::size_t first = outcome.err.find(doubt);
   ASSERT_NE(first, std::string::npos) << outcome.err;
   EXPECT_EQ(outcome.err.find(doubt, first + 1), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("in earlier maps, too"), std::string::npos) << "the map is given twice\n" << outcome.err;
+  EXPECT_EQ(run("evaluate " + map + " --truth " + labels).err.find("in earlier maps"), std::string::npos);
+}
+
+TEST_F(Program, ARecallIsAskedOfAClassInEveryWayOfWritingIt) {
+  const std::string map = path("map.clx").string(), labels = path("own_class.yaml").string();
+  writeFile(labels, "labels:\n  30: {name: bush, object: Bush}\n");
+  for (const char* written : {"Bush", "bush", "clx:Bush", "BUSH"})
+    EXPECT_EQ(run("evaluate " + map + " --truth " + labels + " --min-recall " + written + "=0").code, 0) << written;
+  expectError(run("evaluate " + map + " --truth " + labels + " --min-recall Unicorn=0"), 2, "Unicorn");
+  expectError(run("evaluate " + map + " --truth " + labels + " --min-recall Barrier=0"), 2, "no class 'Barrier'");
 }
 
 TEST_F(Program, AnEmptyFileIsFilledByWhatMakesMapsAndStores) {
