@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The counterfactual against trying every set of tests, on random conditions.
-#include "rules/decide/counterfactuals.hpp"
+#include "rules/explain/counterfactuals.hpp"
 
 #include <gtest/gtest.h>
 

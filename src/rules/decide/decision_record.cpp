@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "rules/decide/counterfactuals.hpp"
-#include "rules/propose/changed_values.hpp"
+#include "rules/explain/changed_values.hpp"
+#include "rules/explain/counterfactuals.hpp"
 #include "rules/propose/condition_eval.hpp"
 #include "rules/propose/evidence.hpp"
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <map>
 
-#include "rules/decide/counterfactuals.hpp"
+#include "rules/explain/counterfactuals.hpp"
 
 namespace cluxel::rules {
 

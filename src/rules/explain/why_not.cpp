@@ -7,7 +7,7 @@
 #include <array>
 #include <limits>
 
-#include "rules/decide/counterfactuals.hpp"
+#include "rules/explain/counterfactuals.hpp"
 
 namespace cluxel::rules {
 

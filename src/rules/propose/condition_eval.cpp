@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "rdf/map_iris.hpp"
-#include "rules/propose/changed_values.hpp"
+#include "rules/explain/changed_values.hpp"
 #include "rules/propose/pair_measures.hpp"
 #include "rules/propose/unseen_ends.hpp"
 

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "rules/decide/threshold_margins.hpp"
-#include "rules/propose/changed_values.hpp"
+#include "rules/explain/changed_values.hpp"
 #include "rules/propose/condition_eval.hpp"
 
 namespace cluxel::rules {

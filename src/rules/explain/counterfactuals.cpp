@@ -2,7 +2,7 @@
 // Evaluates a condition tree bottom-up for the cheapest change of its outcome. To flip an `all` that holds, or an `any`
 // that fails, one operand must flip: take the cheapest. To flip an `all` that fails, or an `any` that holds, every
 // operand with that outcome must flip: take all.
-#include "rules/decide/counterfactuals.hpp"
+#include "rules/explain/counterfactuals.hpp"
 
 #include <algorithm>
 #include <cmath>

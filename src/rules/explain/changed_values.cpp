@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Compares what two conditions measure, whatever their thresholds are.
-#include "rules/propose/changed_values.hpp"
+#include "rules/explain/changed_values.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +12,7 @@ namespace {
 using Kind = Condition::Kind;
 
 /// `touches_ground` compares the bottom, as a test of this attribute does.
-Condition measureOf(const Condition& test) {
+Condition measuredBy(const Condition& test) {
   if (test.kind != Kind::Relation || test.relation != perception::RelationKind::TouchesGround) return test;
   Condition bottom;
   bottom.kind = Kind::Attribute;
@@ -56,7 +56,7 @@ std::vector<FragmentIndex> targetOf(const Condition& test, const Bindings& bindi
 }  // namespace
 
 void ChangedValues::set(const Condition& test, const Bindings& bindings, double measured, double value) {
-  Change made{measureOf(test), bindings.at(test.of).fragments, targetOf(test, bindings), measured, value};
+  Change made{measuredBy(test), bindings.at(test.of).fragments, targetOf(test, bindings), measured, value};
   const auto known = std::find_if(changes_.begin(), changes_.end(), [&](const Change& change) {
     return change.subject == made.subject && change.target == made.target && measureTheSame(change.test, made.test);
   });
@@ -67,7 +67,7 @@ void ChangedValues::set(const Condition& test, const Bindings& bindings, double 
 }
 
 std::optional<double> ChangedValues::of(const Condition& test, const Bindings& bindings) const {
-  const Condition measure = measureOf(test);
+  const Condition measure = measuredBy(test);
   const std::vector<FragmentIndex>& subject = bindings.at(test.of).fragments;
   for (const Change& change : changes_)
     if (change.subject == subject && measureTheSame(change.test, measure) && change.target == targetOf(test, bindings))
