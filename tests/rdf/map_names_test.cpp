@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <lmdb.h>
 
+#include <atomic>
 #include <chrono>
 #include <fstream>
 #include <functional>
@@ -171,6 +172,36 @@ TEST_F(MapNames, AWriterWaitsUntilALockFileThatIsOutOfDateIsClosed) {
   EXPECT_NO_THROW(putIn(file_, "two", "2"));
   ending.join();
   EXPECT_EQ(blockOf(file_, "one") + blockOf(file_, "two"), "12");
+}
+
+/// The lock file gets the number of a commit after the map: here the other process is between the two.
+TEST_F(MapNames, AReaderDoesNotWaitWithAThreadThatWaitsForAnotherProcessToWrite) {
+  create().reset();
+  putIn(file_, "one", "0");
+  putIn(file_, "one", "1");
+  OtherProcess first([&](const Pause& pause) {
+    WriteTransaction transaction = writeMap(file_);
+    transaction.putBlock("t", "two", "2");
+    pause();
+    transaction.commit();
+    return 0;
+  });
+  const auto environment = open();
+  ASSERT_TRUE(forgetNewestCommit(file_, environment->read().commitNumber()));
+  std::atomic<bool> has_begun{false}, is_refused{false};
+  std::thread waiting([&] {
+    has_begun = true;
+    EXPECT_THROW(environment->write(), MapBusy);
+    is_refused = true;
+  });
+  while (!has_begun) std::this_thread::yield();
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  EXPECT_EQ(environment->read().block("t", "one"), "0");
+  EXPECT_FALSE(is_refused) << "the reader waited";
+  waiting.join();
+  EXPECT_EQ(first.end(), 0);
+  EXPECT_EQ(environment->read().block("t", "one"), "1");
+  EXPECT_EQ(environment->read().block("t", "two"), "2");
 }
 
 /// As Python's multiprocessing does: the child has a copy of what the parent has open.

@@ -105,8 +105,9 @@ void LmdbEnvironment::leaveWriting() {
 }
 
 bool LmdbEnvironment::withoutWriters(const std::function<void()>& work) const {
-  const std::lock_guard lock(writer_mutex_);
-  return !writer_active_ && runWithoutWriters(data_lock_, file_, work);
+  // A thread that waits until another process has written holds the mutex. Readers do not wait with it.
+  const std::unique_lock lock(writer_mutex_, std::try_to_lock);
+  return lock.owns_lock() && !writer_active_ && runWithoutWriters(data_lock_, file_, work);
 }
 
 /// LMDB takes the number of the newest commit from the lock file.
