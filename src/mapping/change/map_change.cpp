@@ -141,6 +141,13 @@ std::uint64_t batchSizeOf(const std::vector<Cloud>& clouds, const rdf::ReadTrans
   return computed > 2 * all.size() ? std::max<std::uint64_t>(points, 1) : size;
 }
 
+/// Clouds that reach most of the map go together when nothing else is asked for: all is decided anew, once.
+std::uint64_t usualBatchOf(const std::vector<Cloud>& clouds, const rdf::ReadTransaction& transaction) {
+  TileSet below;
+  for (const Cloud& cloud : clouds) below.merge(tilesBelow(cloud));
+  return 2 * below.size() > storedTiles(transaction).size() ? kBatchPoints : kStagePoints;
+}
+
 ChangeReport removedFrom(const fs::path& file, const std::vector<scan::ScanId>& scans, const ChangeParams& params,
                          ProgressSink& sink) {
   requireOnce(scans);
@@ -149,7 +156,8 @@ ChangeReport removedFrom(const fs::path& file, const std::vector<scan::ScanId>& 
   const std::vector<Cloud> clouds = cloudsToRetract(scans, *transaction, sink);
   if (clouds.size() == storedClouds(*transaction).size())
     throw Error(ErrorKind::InvalidArgument, file.string() + ": no scan would be left; remove the file instead");
-  const std::uint64_t batch_points = batchSizeOf(clouds, *transaction, params.batch_points.value_or(kStagePoints));
+  const std::uint64_t batch_points =
+      batchSizeOf(clouds, *transaction, params.batch_points.value_or(usualBatchOf(clouds, *transaction)));
   PointChanges changes;
   std::vector<Cloud> removed;
   std::uint64_t points = 0;

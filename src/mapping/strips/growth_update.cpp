@@ -53,11 +53,15 @@ class GrowthUpdate {
 
   bool isLarge() const { return cluxels_ > params_.whole_cluxels; }
 
-  /// Most of the map changed, or lies beside what did. Strips that take tiles from one state to another hide the tiles
-  /// beside them for a while: then the whole map is decided sooner.
-  bool isMostOfMap() const {
-    const std::size_t around = perception::withRing(other_, all_).size();
-    return static_cast<double>(around) > work_.params.max_window_share * static_cast<double>(all_.size());
+  /// What changed lies all over the map: each strip has unchanged tiles on all sides, and the whole map is decided
+  /// sooner. Where nearly all tiles changed, strips take as long, and need no list of all objects.
+  bool isScattered() const {
+    constexpr double kNearlyAll = 0.9;
+    const auto all = static_cast<double>(all_.size());
+    return static_cast<double>(
+               other_.size())<kNearlyAll * all&& static_cast<double>(perception::withRing(other_, all_).size())>
+               work_.params.max_window_share *
+           all;
   }
 
   std::optional<SemanticUpdate> run() {
@@ -199,7 +203,7 @@ std::optional<SemanticUpdate> updateByGrowth(const LayerWork& work, const Output
   if (!former || former->cluxels == 0) return std::nullopt;
   if (!isOnlyAdded(work.transaction, changes, *former)) return std::nullopt;
   GrowthUpdate growth(work, changes, *former);
-  return growth.isLarge() && !growth.isMostOfMap() ? growth.run() : std::nullopt;
+  return growth.isLarge() && !growth.isScattered() ? growth.run() : std::nullopt;
 }
 
 }  // namespace cluxel::mapping
