@@ -54,9 +54,9 @@ MapChanges extend(Map& map, const ChangePaths& scans, const std::optional<std::f
                  [&](ProgressSink& sink) { return map.extend(listOfChanged(scans), options, sink); });
 }
 
-MapChanges retract(Map& map, const std::vector<std::string>& clouds, unsigned threads, bool dry_run,
-                   py::object progress, py::object note) {
-  const ChangeOptions options{{}, threads, {}, dry_run};
+MapChanges retract(Map& map, const std::vector<std::string>& clouds, unsigned threads,
+                   std::optional<std::uint64_t> batch_points, bool dry_run, py::object progress, py::object note) {
+  const ChangeOptions options{{}, threads, batch_points, dry_run};
   return changed(std::move(progress), std::move(note),
                  [&](ProgressSink& sink) { return map.retract(clouds, options, sink); });
 }
@@ -113,9 +113,11 @@ void bindChanges(py::module_& module, py::class_<Map>& map) {
           py::arg("note") = py::none(),
           "Adds scans: the map is then the one that build() makes from all scans. Scans that are there with the same\n"
           "pose are passed over. dry_run: tells what would change, and writes nothing. Gives MapChanges.");
-  map.def("retract", &retract, py::arg("clouds"), py::kw_only(), py::arg("threads") = 0U, py::arg("dry_run") = false,
-          py::arg("progress") = py::none(), py::arg("note") = py::none(),
-          "Removes scans, named by id (four digits or more), source path or file name. Gives MapChanges.");
+  map.def("retract", &retract, py::arg("clouds"), py::kw_only(), py::arg("threads") = 0U,
+          py::arg("batch_points") = py::none(), py::arg("dry_run") = false, py::arg("progress") = py::none(),
+          py::arg("note") = py::none(),
+          "Removes scans, named by id (four digits or more), source path or file name, batch by batch. Gives\n"
+          "MapChanges.");
   map.def("repose", &repose, py::arg("poses"), py::kw_only(), py::arg("threads") = 0U,
           py::arg("batch_points") = py::none(), py::arg("dry_run") = false, py::arg("progress") = py::none(),
           py::arg("note") = py::none(),

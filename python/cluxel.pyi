@@ -237,6 +237,7 @@ class Map:
         clouds: Sequence[str],
         *,
         threads: int = 0,
+        batch_points: Optional[int] = ...,
         dry_run: bool = False,
         progress: Optional[Callable[[str, int, int], object]] = None,
         note: Optional[Callable[[str], object]] = None,

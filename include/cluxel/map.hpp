@@ -134,7 +134,8 @@ class CLUXEL_API Map {
   MapChanges extend(const std::vector<std::filesystem::path>& scans, const ChangeOptions& options, ProgressSink& sink);
   /// Removes scans, named as in CloudPose; those that were removed before are noted. NotFound for an unknown name;
   /// InvalidArgument when none would be left, or when the file at a path holds another scan of the map now: to find
-  /// out, the files at such paths are read.
+  /// out, the files at such paths are read. Many scans go in several commits, each of which is the exact map of the
+  /// scans that are left then.
   MapChanges retract(const std::vector<std::string>& clouds, const ChangeOptions& options, ProgressSink& sink);
   /// Gives scans other poses, as after a loop closure. Many scans move in several commits, each of which is the exact
   /// map of the poses that the scans have then. No files are read: a path names what was read from it.

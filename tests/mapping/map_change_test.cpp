@@ -58,6 +58,22 @@ TEST_F(MapChange, RetractingAScanLeavesNoTraceOfIt) {
   expectExact({{0, 0}, {1, 0}, {2, 0}});
 }
 
+/// Its bounds hold 10^11 tiles.
+TEST_F(MapChange, AScanWithAPointFarAwayCanBeRetracted) {
+  const auto write = [&](const std::string& name, double height_m, const std::string& last) {
+    const fs::path path = folder.path() / name;
+    std::ofstream text(path);
+    for (int i = 0; i < 400; ++i) text << 0.1 * (i % 20) << ' ' << 0.1 * (i / 20) << ' ' << height_m << '\n';
+    text << last;
+    return path;
+  };
+  const fs::path near = write("near.xyz", 0, ""), far = write("far.xyz", 0.1, "9000000 9000000 0\n");
+  buildMap(scansOf({near}), *inputs, folder.path() / "near.clx", {}, silence());
+  buildMap(scansOf({near, far}), *inputs, map(), {.force = true}, silence());
+  EXPECT_EQ(retractScans(map(), {scansOf({far}).load(0).id}, {}, silence()).scans_removed, 1U);
+  EXPECT_TRUE(contentOf(map()) == contentOf(folder.path() / "near.clx"));
+}
+
 TEST_F(MapChange, MovedScansGiveTheBuildWithTheirNewPoses) {
   build({{0, 0}, {1, 0}, {2, 0}, {3, 0}});
   EXPECT_EQ(move({{1, 1}, {3, -1}}).scans_moved, 2U);

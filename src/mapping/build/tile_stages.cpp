@@ -251,8 +251,10 @@ TileSet TileStages::run(rdf::WriteTransaction& transaction, PointChanges changes
   }
   if (donor || changes.hasAdded() || !changes.anew.empty())
     changes_.lender = changes.is_lender && changes_.tiles.empty() ? changes.copied : nullptr;
-  const bool are_many = !donor && sumOf(pointsIn(transaction, changes.anew)) > max_points_ + max_points_ / 2;
-  changes.readAnew(transaction, are_many);  // the scans are stored already, also those that were added
+  const std::uint64_t anew_points = sumOf(pointsIn(transaction, changes.anew)) + sumOf(changes.stored_points);
+  const bool are_many = !donor && !changes.anew.empty() && anew_points > max_points_ + max_points_ / 2;
+  // The scans are stored already, also those that were added.
+  are_many ? changes.noteAnew(transaction) : changes.readAnew(transaction);
   const perception::RunOptions options{.threads = threads,
                                        .store = &store,
                                        .observer = &progress,
@@ -262,7 +264,7 @@ TileSet TileStages::run(rdf::WriteTransaction& transaction, PointChanges changes
   const PointCounts points_there =
       pointsIn(transaction, are_many ? changes.tiles() : without(changes.tiles(), changes.anew));
   TileSet changed;
-  if (changes.stored.empty() && (donor || sumOf(points_there) < max_points_)) {
+  if (changes.stored.empty() && !are_many && (donor || sumOf(points_there) < max_points_)) {
     changed = runStages(std::move(changes.added), labeller_, params_, outputs_, options);
   } else {
     ScanBands bands(transaction, std::move(changes), points_there, max_points_ / 2, threads);

@@ -52,7 +52,7 @@ void requireScans(const scan::ScanSet& scans) {
 /// What of an operation in batches was committed before an error.
 void noteDone(const MapEditor& editor, std::size_t scans, const std::string& done) {
   if (scans > 0 && !editor.params().dry_run)
-    editor.sink().note(std::to_string(scans) + " scans were " + done +
+    editor.sink().note(std::to_string(scans) + (scans == 1 ? " scan was " : " scans were ") + done +
                        " before the error; the same command goes on from there");
 }
 
@@ -110,13 +110,13 @@ std::vector<Cloud> cloudsToRetract(const std::vector<scan::ScanId>& scans, const
   return clouds;
 }
 
-/// The tiles that the bounds of a cloud reach.
-TileSet tilesBelow(const Cloud& cloud) {
-  TileSet tiles;
-  const perception::TileKey first = perception::tileOf(cloud.min), last = perception::tileOf(cloud.max);
-  for (std::int32_t x = first.x; x <= last.x; ++x)
-    for (std::int32_t y = first.y; y <= last.y; ++y) tiles.insert({x, y});
-  return tiles;
+/// Those of the tiles that the bounds of a cloud reach, most of which lie near each other.
+TileSet tilesBelow(const Cloud& cloud, const TileSet& tiles) {
+  const perception::TileKey low = perception::tileOf(cloud.min), high = perception::tileOf(cloud.max);
+  TileSet below;
+  for (auto tile = tiles.lower_bound({low.x, low.y}); tile != tiles.end() && tile->x <= high.x; ++tile)
+    if (tile->y >= low.y && tile->y <= high.y) below.insert(*tile);
+  return below;
 }
 
 /// The size of batches in which these clouds of the map move or go, in points. They are one batch when batches would
@@ -127,10 +127,11 @@ std::uint64_t batchSizeOf(const std::vector<Cloud>& clouds, const rdf::ReadTrans
   for (const Cloud& cloud : clouds) points += cloud.point_count;
   for (const Cloud& cloud : storedClouds(transaction)) map_points += cloud.point_count;
   const std::uint64_t size = partSize(points, map_points, max_points);
+  const TileSet tiles = storedTiles(transaction);
   TileSet all, of_batch;
   std::size_t computed = 0, scans = 0;
   for (std::size_t i = 0; i < clouds.size(); ++i) {
-    of_batch.merge(tilesBelow(clouds[i]));
+    of_batch.merge(tilesBelow(clouds[i], tiles));
     batch_points += clouds[i].point_count;
     const std::size_t left = clouds.size() - i - 1;
     if (left > 0 && !isFull(batch_points, ++scans, left, size)) continue;
@@ -143,9 +144,10 @@ std::uint64_t batchSizeOf(const std::vector<Cloud>& clouds, const rdf::ReadTrans
 
 /// Clouds that reach most of the map go together when nothing else is asked for: all is decided anew, once.
 std::uint64_t usualBatchOf(const std::vector<Cloud>& clouds, const rdf::ReadTransaction& transaction) {
+  const TileSet tiles = storedTiles(transaction);
   TileSet below;
-  for (const Cloud& cloud : clouds) below.merge(tilesBelow(cloud));
-  return 2 * below.size() > storedTiles(transaction).size() ? kBatchPoints : kStagePoints;
+  for (const Cloud& cloud : clouds) below.merge(tilesBelow(cloud, tiles));
+  return 2 * below.size() > tiles.size() ? kBatchPoints : kStagePoints;
 }
 
 ChangeReport removedFrom(const fs::path& file, const std::vector<scan::ScanId>& scans, const ChangeParams& params,
@@ -226,7 +228,10 @@ ChangeReport movedIn(const fs::path& file, const std::vector<ScanPose>& poses, c
       scan.T_map_sensor = moves[i].pose.T_map_sensor;
       scan.has_pose = true;
       changes.anew = unionOf(std::move(changes.anew), removeScan(*transaction, scan.id));
-      for (const auto& [tile, segment] : storeScan(*transaction, scan)) changes.anew.insert(tile);
+      for (const auto& [tile, segment] : storeScan(*transaction, scan)) {
+        changes.anew.insert(tile);
+        changes.stored_points[tile] += segment.size();
+      }
       moved.push_back(requiredCloud(*transaction, scan.id));
       points += moved.back().point_count;
       sink.progress("scans", i + 1, moves.size());

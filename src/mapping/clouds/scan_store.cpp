@@ -194,18 +194,18 @@ TileSet PointChanges::tiles() const {
   return all;
 }
 
-void PointChanges::readAnew(const rdf::ReadTransaction& transaction, bool later) {
+void PointChanges::readAnew(const rdf::ReadTransaction& transaction) {
+  noteAnew(transaction);
+  for (const auto& [scan, lowest] : std::exchange(scans_anew, {}))
+    for (auto& [tile, segment] : perception::splitScan(storedScan(transaction, scan)))
+      if (anew.contains(tile)) added[tile].push_back(std::move(segment));
+}
+
+void PointChanges::noteAnew(const rdf::ReadTransaction& transaction) {
   if (anew.empty()) return;
   for (const perception::TileKey& tile : anew) added[tile].clear();  // no scan may have points there
-  for (const Cloud& cloud : storedClouds(transaction)) {
-    const auto lowest = lowestBelow(cloud, anew);
-    if (!lowest) continue;
-    if (later)
-      scans_anew.emplace(cloud.id, *lowest);
-    else
-      for (auto& [tile, segment] : perception::splitScan(storedScan(transaction, cloud.id)))
-        if (anew.contains(tile)) added[tile].push_back(std::move(segment));
-  }
+  for (const Cloud& cloud : storedClouds(transaction))
+    if (const auto lowest = lowestBelow(cloud, anew)) scans_anew.emplace(cloud.id, *lowest);
 }
 
 void PointChanges::add(ScanSegments segments, std::uint64_t part_points) {

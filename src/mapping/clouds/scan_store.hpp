@@ -25,7 +25,8 @@ struct PointChanges {
   /// Scans that were added, too, whose points are read again when the stages come to them: by id the lowest x and y of
   /// their tiles. They are stored.
   std::map<scan::ScanId, perception::TileKey> stored;
-  std::map<perception::TileKey, std::uint64_t> stored_points;  ///< how many points these have in each tile
+  /// How many points these, and scans that moved, have in each tile.
+  std::map<perception::TileKey, std::uint64_t> stored_points;
   /// Scans that may have points in `anew`, where these are read when the stages come to them: the lowest x and y of the
   /// tiles. Empty where they are in `added`.
   std::map<scan::ScanId, perception::TileKey> scans_anew;
@@ -40,8 +41,10 @@ struct PointChanges {
   bool hasAdded() const { return !added.empty() || !stored.empty(); }
   /// Whether there are so many points that none stays in memory, and nothing else changes.
   bool mayCommitEarly() const { return is_alone && !stored.empty(); }
-  /// Reads all points of `anew`, or notes the scans that have them when none are to stay in memory.
-  void readAnew(const rdf::ReadTransaction& transaction, bool later);
+  /// Adds all points of `anew`.
+  void readAnew(const rdf::ReadTransaction& transaction);
+  /// Notes the scans that have them instead, so that none stay in memory.
+  void noteAnew(const rdf::ReadTransaction& transaction);
   /// Adds what a stored scan has. From one and a half times `part_points` points on, none stay in memory.
   void add(ScanSegments segments, std::uint64_t part_points);
 
