@@ -139,6 +139,47 @@ TEST(Explaining, OffersNoChangeAfterWhichTheEvidenceSpeaksAgainstTheThing) {
   }
 }
 
+/// A post of three columns, 5 m high, where it costs `nothing` to leave a column without an object: what the least
+/// change leads to, or why there is none.
+std::string leastChangeOfGroup(double nothing) {
+  RuleSet rules = rulesOf("[[clx:Pole, clx:StreetLamp]]", R"(
+  - id: pole/tall
+    class: clx:Pole
+    seed: { label: column, as: pole }
+    group: { near: 1 m }
+    tree:
+      test: height >= 6 m
+      yes: { accept: { confidence: 0.9 } }
+      no: { reject: low }
+  - id: lamp/flat
+    class: clx:StreetLamp
+    seed: { label: scatter }
+    tree:
+      test: height <= 1 m
+      yes: { accept: { confidence: 0.5 } }
+      no: { reject: high }
+)");
+  rules.nothing.fill(nothing);
+  const auto postOf = [](double height) {
+    BoxScene scene;
+    for (const double x : {0.0, 0.5, 1.0})
+      scene.boxes.push_back(box("p" + std::to_string(x), kColumn, {x, 0, height / 2}, {0.3, 0.3, height}));
+    return sceneOfBoxes(scene);
+  };
+  const BuiltBoxScene low = postOf(5), high = postOf(6.5);
+  const Explanation explanation = explain(low.scene, rules, {}, 0);
+  const auto& change = explanation.decisions.at(0).counterfactual;
+  EXPECT_EQ(change.has_value() && change->accepted, !reason(high.scene, rules).objects.empty())
+      << "what is offered comes out";
+  return change ? change->outcome : "none";
+}
+
+TEST(Explaining, OffersNoChangeToAGroupThatIsLikelierNothing) {
+  EXPECT_EQ(leastChangeOfGroup(-3), "clx:Pole");
+  EXPECT_EQ(leastChangeOfGroup(0.5), "clx:Pole") << "log-odds of 2.2 are more than three times 0.5";
+  EXPECT_EQ(leastChangeOfGroup(1.5), "none") << "they are more than 1.5, but less than three times 1.5";
+}
+
 TEST(Explaining, CountsAThingThatIsNoLongerASeedAsLost) {
   const RuleSet rules = rulesOf("[clx:Pole]", R"(
   - id: pole/tall

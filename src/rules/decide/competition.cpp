@@ -4,7 +4,6 @@
 #include "rules/decide/competition.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <set>
 
@@ -98,9 +97,8 @@ class Competition {
       const AcceptLeaf& accept = *proposal.verdict.accept;
       const Bindings& bindings = proposal.verdict.bindings;
       Rival rival;
-      const LogOddsOfNothing nothing = logOddsOfNothing(state_, accept, bindings);
       const double log_odds = proposal.verdict.decision.log_odds;
-      rival.score = log_odds > nothing.as_one ? std::llround((log_odds - nothing.sum) * 1e6) : 0;
+      rival.score = logOddsOfNothing(state_, accept, bindings).scoreOf(log_odds);
       rival.is_likely = rival.score > 0 && log_odds >= kLikely;
       rival.share_class = static_cast<std::uint32_t>(
           std::find(state_.rules.order.begin(), state_.rules.order.end(), proposal.rule->class_iri) -

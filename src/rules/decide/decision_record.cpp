@@ -3,6 +3,7 @@
 #include "rules/decide/decision_record.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "rules/explain/changed_values.hpp"
 #include "rules/explain/counterfactuals.hpp"
@@ -122,7 +123,7 @@ class Judging {
     const bool competes = !rule_.leftovers && std::any_of(strata.begin(), strata.end(), [this](const auto& stratum) {
       return stratum.size() > 1 && std::find(stratum.begin(), stratum.end(), rule_.class_iri) != stratum.end();
     });
-    return log_odds <= (competes ? logOddsOfNothing(state_, accept, bindings).as_one : kMinLogOdds);
+    return competes ? logOddsOfNothing(state_, accept, bindings).scoreOf(log_odds) <= 0 : log_odds <= kMinLogOdds;
   }
 
   /// Whether a seed of one fragment is still one with the changed values. Seeds are chosen one by one, before they are
@@ -181,6 +182,10 @@ class Judging {
 
 Verdict judge(const ReasoningState& state, const Rule& rule, const std::vector<FragmentIndex>& group) {
   return Judging(state, rule).about(group);
+}
+
+std::int64_t LogOddsOfNothing::scoreOf(double log_odds) const {
+  return log_odds > as_one ? std::llround((log_odds - sum) * 1e6) : 0;
 }
 
 LogOddsOfNothing logOddsOfNothing(const ReasoningState& state, const AcceptLeaf& accept, const Bindings& bindings) {

@@ -2,6 +2,8 @@
 // Describes what a rule decided about a candidate, with the path through its tree and its evidence.
 #pragma once
 
+#include <cstdint>
+
 #include "rules/propose/tree_walk.hpp"
 
 namespace cluxel::rules {
@@ -29,6 +31,10 @@ inline constexpr double kMinLogOdds = -3;
 struct LogOddsOfNothing {
   double sum = 0;     ///< each by itself
   double as_one = 0;  ///< all together: their mean, weighted by points
+
+  /// What a candidate with these log-odds gains over leaving its fragments uncovered, in units of 1e-6. It can win
+  /// when this is above 0. Each fragment counts, but many of them alone make no candidate likelier.
+  std::int64_t scoreOf(double log_odds) const;
 };
 LogOddsOfNothing logOddsOfNothing(const ReasoningState& state, const AcceptLeaf& accept, const Bindings& bindings);
 
