@@ -169,6 +169,9 @@ TEST(InstancesFromFile, AreThoseOfAScanInAnyUnitAndPlace) {
   for (const char* point : {"0 0 0 9 7", "1 0 0 8 -1", "2 0 0 7 0"}) far.insert(far.find(point), "50000");
   const auto place = folder.write("place.ply", far);
   EXPECT_THAT(instancesFromFile(scanOf(place), "number"), ElementsAre(7, -1, 0));
+  Scan reposed = scanOf(place);
+  reposed.has_pose = true;  // as a map tells of a scan that got a pose later
+  EXPECT_THAT(instancesFromFile(reposed, "number"), ElementsAre(7, -1, 0));
   ScanSetParams posed;
   posed.poses = folder.write("poses.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n");
   posed.frame.unit = LengthUnit::Millimetre;

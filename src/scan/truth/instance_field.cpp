@@ -14,28 +14,30 @@ namespace {
 /// Evaluation numbers the objects of several scans one after the other.
 constexpr std::uint32_t kMaxInstances = 1'000'000;
 
-/// Whether the file holds the scan when its points are read in this frame. Throws InputError where they cannot be.
-bool isReadAs(const Scan& scan, ParsedScan parsed, const InputFrame& frame) {
+/// Whether the file holds the scan when its points are read in this frame, with the scan's pose or without one. Throws
+/// InputError where they cannot be.
+bool isReadAs(const Scan& scan, ParsedScan parsed, const InputFrame& frame, bool has_pose) {
   ScanFile file;
   file.path = scan.source;
   file.format = ScanFormat::Ply;
   file.frame = frame;
-  file.has_pose = scan.has_pose;
-  if (scan.has_pose) file.T_map_sensor = scan.T_map_sensor;
+  file.has_pose = has_pose;
+  if (has_pose) file.T_map_sensor = scan.T_map_sensor;
   return scanOf(file, parsed).id == scan.id;
 }
 
 /// Whether what the file holds was measured as the scan was. A map keeps neither unit nor axes of its inputs: all are
-/// tried, metres with z up first.
+/// tried, metres with z up first. Nor does it keep whether a scan that has a pose had one when it was read, or got it
+/// later: both are tried, too, because points far from the origin are read in two ways.
 bool holds(const ParsedScan& parsed, const Scan& scan) {
   for (const UpAxis up : {UpAxis::Z, UpAxis::Y})
     for (const LengthUnit unit : {LengthUnit::Metre, LengthUnit::Centimetre, LengthUnit::Millimetre, LengthUnit::Foot,
                                   LengthUnit::UsSurveyFoot})
-      try {
-        if (isReadAs(scan, parsed, {unit, up})) return true;
-      } catch (const InputError&) {
-        continue;  // so far away in this unit that no map has it
-      }
+      for (const bool has_pose : {true, false}) try {
+          if ((scan.has_pose || !has_pose) && isReadAs(scan, parsed, {unit, up}, has_pose)) return true;
+        } catch (const InputError&) {
+          continue;  // so far away in this unit that no map has it
+        }
   return false;
 }
 
