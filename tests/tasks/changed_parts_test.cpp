@@ -66,6 +66,20 @@ TEST(ChangedParts, TwoScansThatPassedShowThatALargeThingIsGone) {
   EXPECT_EQ(partsIn(some_hit), 0U) << "something is left";
 }
 
+TEST(ChangedParts, FewLooksOfTwoScansDoNotShowThatALargeThingIsGone) {
+  // One scan looks at each cell, and rays of the own time pass, too: log-odds of 45 and of 58, where 50 are needed.
+  const auto seenByFew = [](int own_scans) {
+    std::vector<PointCell> cells = lampHead(kStructure, 0);
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      cells[i].own.through_scans = bits(own_scans) & ~bits(5);
+      cells[i].other.through_scans.insert(static_cast<std::uint32_t>(i % 2));
+    }
+    return cells;
+  };
+  EXPECT_EQ(partsIn(seenByFew(8)), 0U);
+  EXPECT_EQ(partsIn(seenByFew(7)), 1U);
+}
+
 TEST(ChangedParts, AScanWithAPoorPoseDoesNotKeepAPartThatIsGone) {
   std::vector<PointCell> cells = lampHead(kStructure, 5);
   for (PointCell& cell : cells)

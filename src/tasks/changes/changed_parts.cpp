@@ -106,7 +106,8 @@ class Grouping {
     return found;
   }
 
-  static bool isPassed(const GroupEvidence& found) {
+  /// Whether the group has what each kind of part needs, of scans of its own time and of those that passed it.
+  static bool mayBeGone(const GroupEvidence& found) {
     return found.scans >= kOwnScansOfTop && found.passing_scans >= kPassingLarge &&
            found.stopped <= kMostStopped * found.passing && found.other_hits <= kRest * found.other_looks;
   }
@@ -120,7 +121,7 @@ class Grouping {
   }
 
   bool isGone(const ChangeGroup& group, const GroupEvidence& found) const {
-    if (!isPassed(found) || found.own_hits < kOwnHits * found.own_looks) return false;
+    if (!mayBeGone(found) || found.own_hits < kOwnHits * found.own_looks) return false;
     const double log_odds = logOdds(found);
     if (found.passing_scans < kPassing) return isLarge(found, group, log_odds);
     const auto height = [this](std::uint32_t cell) { return cells_[cell].place.z(); };

@@ -32,10 +32,10 @@ ChangeState stateOf(const PointCell& cell);
 ///   and half of the rays of its own time hit it, and at most 10 % of the looks of the other time do; or
 /// - evident: four scans measured it; log-odds of 400 or more, and 3 or more on average. Rays pass through a bicycle
 ///   and a bush while they are there, but not all of them.
-/// All but the first need log-odds of 80 or more, and 3 or more on average, where something stays at the height of the
-/// group: what few looks miss beside something that stays is mostly an edge of it, seen with poor poses or along its
-/// face. Some scans still hit a head that is gone, because the pole in it seems to stand elsewhere. And rays find gaps
-/// in a crown that no ray of the other time found, so that foliage is never called solid.
+/// Where something stays at the height of a group that three scans or more passed, the group needs log-odds of 80 or
+/// more, and 3 or more on average: what few looks miss beside something that stays is mostly an edge of it, seen with
+/// poor poses or along its face. Some scans still hit a head that is gone, because the pole in it seems to stand
+/// elsewhere. And rays find gaps in a crown that no ray of the other time found, so that foliage is never called solid.
 std::vector<ChangeGroup> changedParts(const std::vector<PointCell>& cells);
 
 /// Those of the possible parts that changedParts() keeps. `cells` need not hold more than these and what is near them.
