@@ -16,7 +16,8 @@ namespace cluxel::rules {
 class ChangedValues {
  public:
   /// Takes `value` [SI] for what an elementary test measures. Of two values for one measure the one farther from
-  /// `measured` stays, which turns both tests.
+  /// `measured` stays: it turns both tests when both values lie on one side of `measured`. When they do not, no value
+  /// may turn both; the walk then tells what comes out.
   void set(const Condition& test, const Bindings& bindings, double measured, double value);
   /// What the test or line of evidence measures instead; absent when that has not changed.
   std::optional<double> of(const Condition& test, const Bindings& bindings) const;
