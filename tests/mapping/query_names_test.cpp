@@ -87,6 +87,7 @@ TEST(QueryNames, OfClassesThatComeLaterAreWarnedOf) {
   const std::string none_yet = "and no such object exists yet when clx:Building has its turn";
   EXPECT_THAT(saidOfAsking("?x a clx:Tree ."),
               HasSubstr("r.yaml:11:12: warning: the query looks for clx:Tree, " + none_yet));
+  EXPECT_THAT(saidOfAsking("?x a clx:Tree ."), HasSubstr("finds only what operators have stated"));
   for (const char* late : {"?x a clx:Building .", "?x a clx:StreetSign .", "FILTER NOT EXISTS { ?x a clx:Tree }",
                            "OPTIONAL { ?x a clx:Tree }"})
     EXPECT_THAT(saidOfAsking(late), HasSubstr(none_yet)) << late;

@@ -117,7 +117,8 @@ void checkEarlier(const std::string& object_class, const SourceLocation& at, con
         "classes that a rule looks at come earlier in 'order'");
 }
 
-/// A query sees the objects of earlier strata, not those of its own. Classes that no stratum makes are left alone: they
+/// A query sees the objects of earlier strata, not those of its own. What operators have stated it sees in every
+/// stratum, so a late class may still be found: this is a warning. Classes that no stratum makes are left alone: they
 /// may be of parts, primitives and places, which are in the map before.
 void checkAsked(const std::string& object_class, const SourceLocation& at, const Rule& rule, const RuleSet& rules,
                 FaultList& faults) {
@@ -129,11 +130,12 @@ void checkAsked(const std::string& object_class, const SourceLocation& at, const
     is_late = is_late || std::find(stratum.begin(), stratum.end(), rule.class_iri) != stratum.end();
     if (makes && !is_late) return;
     if (makes)
-      return faults.warning(at,
-                            "the query looks for " + rules.shorten(object_class) +
-                                ", and no such object exists yet when " + rules.shorten(rule.class_iri) +
-                                " has its turn: this pattern finds nothing",
-                            "classes that a query looks for come earlier in 'order'");
+      return faults.warning(
+          at,
+          "the query looks for " + rules.shorten(object_class) + ", and no such object exists yet when " +
+              rules.shorten(rule.class_iri) +
+              " has its turn: this pattern finds only what operators have stated, as in a loaded register",
+          "to find objects that rules make, put their class earlier in 'order'");
   }
 }
 
