@@ -54,6 +54,7 @@ bool takeNewStatements(rdf::WriteTransaction& transaction, const rules::ClassCat
       requireStatableOrDormant(statement, classes, sink);
       requireNoWholeClass(transaction, statement);
     } catch (const Error& fault) {
+      if (!isFaultOfStatement(fault)) throw;
       throw RefusedQuad({Term::iri(iri), {}, {}, {}}, "the statement <" + iri + ">: " + fault.what());
     }
     made.push_back(statement.id());

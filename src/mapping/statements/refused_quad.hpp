@@ -10,6 +10,11 @@
 
 namespace cluxel::mapping {
 
+/// Whether an error of checking a statement is a fault of what was stated. Others, such as a damaged map, are not.
+inline bool isFaultOfStatement(const Error& fault) {
+  return fault.kind() == ErrorKind::InvalidArgument || fault.kind() == ErrorKind::NotFound;
+}
+
 /// FaultyInput. what() names the subject. It knows no file: who has read one can look for the quad there.
 class RefusedQuad : public Error {
  public:

@@ -79,12 +79,13 @@ Statement statementOf(const Quad& quad, StatedObjects::Anchor anchor, const rule
   return statement;
 }
 
-/// Calls `check`, whose errors are about what the quad states.
+/// Calls `check`. When it finds a fault of what the quad states, throws RefusedQuad.
 template <typename Check>
 auto aboutSubject(const Quad& quad, const Check& check) {
   try {
     return check();
   } catch (const Error& fault) {
+    if (!isFaultOfStatement(fault)) throw;
     throw RefusedQuad(quad, "what is stated of <" + quad.subject.text + ">: " + fault.what());
   }
 }
