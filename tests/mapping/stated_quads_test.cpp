@@ -13,11 +13,14 @@
 #include "mapping/change/map_update.hpp"
 #include "mapping/change/rdf_loading.hpp"
 #include "mapping/change/statement_change.hpp"
+#include "mapping/map_tables.hpp"
 #include "mapping/small_campus.hpp"
 #include "mapping/stated_builds.hpp"
 #include "mapping/statements/stated_values.hpp"
+#include "mapping/thing_history.hpp"
 #include "rdf/file/map_replacement.hpp"
 #include "rdf/map_iris.hpp"
+#include "rules/objects/finished_objects.hpp"
 #include "sparql/query_engine.hpp"
 
 namespace cluxel::mapping {
@@ -249,12 +252,13 @@ TEST_F(StatedQuads, OfPartsAreNoted) {
               HasSubstr(part + " is no object: what is stated of parts"));
 }
 
-/// The properties that graph `observed` gives to resources of a kind.
-std::set<std::string> propertiesOf(const rdf::QuadReader& quads, const std::string& kind) {
+/// The properties that a graph gives to resources of a kind.
+std::set<std::string> propertiesOf(const rdf::QuadReader& quads, const std::string& kind,
+                                   std::string_view graph = rdf::vocabulary::kGraphObserved) {
   const std::string begin = rdf::mapIri(kind, "");
-  const auto observed = quads.idOf(Term::iri(rdf::vocabulary::kGraphObserved));
+  const auto in_graph = quads.idOf(Term::iri(graph));
   std::set<std::string> properties;
-  rdf::QuadCursor cursor = quads.scan({.s = {}, .p = {}, .o = {}, .g = observed});
+  rdf::QuadCursor cursor = quads.scan({.s = {}, .p = {}, .o = {}, .g = in_graph});
   for (rdf::QuadIds quad; cursor.next(quad);) {
     const std::string subject = quads.termOf(quad.s).text;
     if (subject.starts_with(begin) && subject.find('/', begin.size()) == std::string::npos)
@@ -291,6 +295,40 @@ TEST_F(StatedQuads, StateNothingThatTheMapTellsOfObjectsAndStatements) {
   EXPECT_TRUE(of_statements.contains(rdf::vocabulary::clx("contradictsRules")));
   told.insert(of_statements.begin(), of_statements.end());
   for (const std::string& property : told) EXPECT_THROW(requireStatable(property), Error) << property;
+}
+
+TEST_F(StatedQuads, StateNothingThatTheHistoryTellsOfObjectsAndThings) {
+  const MapReader changed(built->path() / "three.clx");
+  std::set<std::string> told = propertiesOf(changed.quads(), "object", rdf::vocabulary::kGraphHistory);
+  told.merge(propertiesOf(changed.quads(), "thing", rdf::vocabulary::kGraphHistory));
+  for (const std::string property : {"specializationOf", "wasDerivedFrom", "wasGeneratedBy", "generatedAtTime"})
+    EXPECT_TRUE(told.contains(provenance(property))) << property;
+  told.insert({provenance("wasInvalidatedBy"), provenance("invalidatedAtTime"), isReplacedBy()});
+  for (const std::string& property : told) EXPECT_THROW(requireStatable(property), Error) << property;
+  const std::string of_things = " <" + provenance("invalidatedAtTime") + "> \"2020-01-01T00:00:00Z\" ";
+  const std::string thing = [&] {
+    const MapReader reader(map());
+    return storedThings(reader.quads()).begin()->second.front().iri;
+  }();
+  EXPECT_THAT(faultOf("INSERT DATA { <" + thing + ">" + of_things + "}"), HasSubstr("is computed by the map"));
+}
+
+/// The user would look for a fault in a file that has none.
+TEST_F(StatedQuads, ThatCannotBeCheckedInADamagedMapAreNoFaultsOfTheirSource) {
+  const std::string object = *objectsOf(map()).begin(), sign = rdf::vocabulary::clx("StreetSign");
+  {
+    rdf::WriteTransaction transaction = rdf::writeMap(map());
+    transaction.putBlock(tables::kObjects, tables::keyOf(rules::idOfClassWide(sign)), "damaged");
+    transaction.commit();
+  }
+  StatementNotes notes;
+  try {
+    updateMap(map(), "INSERT DATA { <" + object + "> a <" + sign + "> }", {.query = {.source_name = "mine.ru"}}, notes);
+    FAIL() << "it was inserted";
+  } catch (const Error& fault) {
+    EXPECT_EQ(fault.kind(), ErrorKind::StoreUnavailable) << fault.what();
+    EXPECT_THAT(fault.what(), Not(HasSubstr("mine.ru")));
+  }
 }
 
 }  // namespace

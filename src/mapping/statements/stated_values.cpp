@@ -54,9 +54,10 @@ constexpr std::array<std::string_view, 32> kComputed{"confidence",
                                                      "statementEffect",
                                                      "contradictsRules"};
 
-/// What the graph `history` tells of objects. A stated one would follow the points to objects of which it is not true.
-constexpr std::array<std::string_view, 4> kHistory{"wasDerivedFrom", "wasGeneratedBy", "wasInvalidatedBy",
-                                                   "specializationOf"};
+/// What the graph `history` tells of objects and things. A stated one would follow the points to objects of which it is
+/// not true. Of PROV; isReplacedBy() comes to them.
+constexpr std::array<std::string_view, 6> kHistory{"wasDerivedFrom",   "wasGeneratedBy",  "wasInvalidatedBy",
+                                                   "specializationOf", "generatedAtTime", "invalidatedAtTime"};
 
 /// Classes that say no more than that it is an object.
 constexpr std::array<std::string_view, 2> kAnyObject{"SpatialThing", "Object"};
@@ -102,7 +103,8 @@ void requireRegion(const RegionAnchor& region) {
 }
 
 bool isComputed(const std::string& property) {
-  return std::any_of(kComputed.begin(), kComputed.end(),
+  return property == isReplacedBy() ||
+         std::any_of(kComputed.begin(), kComputed.end(),
                      [&](std::string_view local) { return property == clx(local); }) ||
          std::any_of(kHistory.begin(), kHistory.end(),
                      [&](std::string_view local) { return property == provenance(local); });
