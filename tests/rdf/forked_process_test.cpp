@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tests of a process that was forked while its parent has a map open, as Python's multiprocessing does.
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <atomic>
+#include <csignal>
 #include <functional>
 #include <future>
 #include <optional>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "rdf/file/map_replacement.hpp"
 #include "rdf/map_file_fixture.hpp"
@@ -123,6 +128,66 @@ TEST_F(ForkedProcess, LeavesItsParentsSnapshotAsItIs) {
             0);
   EXPECT_EQ(snapshot->block("t", "long"), old);
   EXPECT_NE(parents->read().block("t", "long"), old);
+}
+
+/// Both would write the same pages.
+TEST_F(ForkedProcess, CannotGoOnWithATransactionOfItsParent) {
+  auto parents = open();
+  WriteTransaction transaction = parents->write();
+  transaction.putBlock("t", "two", "2");
+  const ReadTransaction snapshot = transaction.before();
+  EXPECT_EQ(inTimelyChild([&] {
+              const std::string remedy = "open it again in this process";
+              const std::vector<std::function<void()>> uses{
+                  [&] { transaction.commit(); }, [&] { transaction.putBlock("t", "three", "3"); },
+                  [&] { transaction.writeIndexes(); }, [&] { transaction.before(); },
+                  [&] { snapshot.block("t", "one"); }};
+              for (std::size_t i = 0; i < uses.size(); ++i)
+                if (refusalOf(uses[i]).find(remedy) == std::string::npos) return static_cast<int>(i) + 1;
+              return 0;
+            }),
+            0);
+  transaction.commit();
+  EXPECT_EQ(parents->read().block("t", "two"), "2");
+  EXPECT_EQ(parents->read().block("t", "three"), std::nullopt);
+}
+
+/// The locks of the parent would live on in its child.
+TEST_F(ForkedProcess, WritesAfterItsParentWasKilledWhileItWrote) {
+  int from_child[2], to_child[2];
+  ASSERT_EQ(::pipe(from_child) | ::pipe(to_child), 0);
+  const pid_t parent = ::fork();
+  if (parent == 0) {
+    ::alarm(30);
+    const auto parents = open();
+    WriteTransaction transaction = parents->write();
+    transaction.putBlock("t", "two", "2");
+    const pid_t own = ::getpid();
+    if (::fork() != 0) {
+      ::kill(own, SIGKILL);
+      ::_exit(1);
+    }
+    ::alarm(30);
+    while (::getppid() == own) ::usleep(1000);
+    const std::string refusal = refusalOf([&] { put(*open(), "three", "3"); });
+    char outcome = refusal == "no refusal" && open()->read().block("t", "two") == std::nullopt ? 'y' : 'n';
+    (void)!::write(from_child[1], &outcome, 1);
+    ::close(to_child[1]);
+    (void)!::read(to_child[0], &outcome, 1);  // the test writes beside it
+    ::_exit(0);
+  }
+  ::close(from_child[1]);
+  ::close(to_child[0]);
+  int status = 0;
+  ::waitpid(parent, &status, 0);
+  char outcome = 0;
+  EXPECT_EQ(::read(from_child[0], &outcome, 1), 1);
+  ::close(from_child[0]);
+  EXPECT_EQ(outcome, 'y');
+  const auto mine = open();
+  put(*mine, "four", "4");
+  EXPECT_EQ(mine->read().block("t", "three"), "3");
+  ::close(to_child[1]);
 }
 
 }  // namespace

@@ -17,6 +17,7 @@
 #include "rdf/file/check/map_file_head.hpp"
 #include "rdf/file/check/map_structure.hpp"
 #include "rdf/file/file_guards.hpp"
+#include "rdf/file/forks.hpp"
 #include "rdf/file/lmdb_environment.hpp"
 #include "rdf/file/lock_file.hpp"
 #include "rdf/file/map_replacement.hpp"
@@ -208,24 +209,30 @@ LmdbEnvironment::LmdbEnvironment(fs::path file, OpenedLmdb opened, int data_lock
       use_(std::move(opened.use)),
       handle_(std::move(opened.handle)),
       data_lock_(data_lock),
-      process_(::getpid()),
+      forks_(forkCount()),
       can_write_(opened.can_write),
-      values_(std::make_unique<ValueCache>()) {}
+      values_(std::make_unique<ValueCache>()) {
+  closeInChildren(data_lock_);
+}
 
 std::uint64_t LmdbEnvironment::fileSize() const {
+  refuseParents();
   return static_cast<std::uint64_t>(statusOf(data_lock_, file_).st_size);
 }
 
 std::uint64_t LmdbEnvironment::diskBytes() const {
+  refuseParents();
   constexpr std::uint64_t kBlock = 512;  // of st_blocks, on every file system
   return static_cast<std::uint64_t>(statusOf(data_lock_, file_).st_blocks) * kBlock;
 }
 
 bool LmdbEnvironment::hasOtherNames() const {
+  refuseParents();
   return statusOf(data_lock_, file_).st_nlink > 1;
 }
 
 bool LmdbEnvironment::punchHole(std::uint64_t begin, std::uint64_t bytes) const {
+  refuseParents();
   int code = 0;
   do
     code = ::fallocate(data_lock_, FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE, static_cast<off_t>(begin),
@@ -237,7 +244,7 @@ bool LmdbEnvironment::punchHole(std::uint64_t begin, std::uint64_t bytes) const 
 }
 
 bool LmdbEnvironment::isOfParent() const {
-  return process_ != ::getpid();
+  return forks_ != forkCount();
 }
 
 void LmdbEnvironment::refuseParents() const {
@@ -247,7 +254,9 @@ void LmdbEnvironment::refuseParents() const {
 }
 
 LmdbEnvironment::~LmdbEnvironment() {
-  if (isOfParent()) {  // a process loses its own locks on a lock file with every descriptor of it that it closes
+  // A process loses its own locks on a lock file with every descriptor of it that it closes. Those that hold locks of
+  // the parent are closed already.
+  if (isOfParent()) {
     static_cast<void>(handle_.release());
     static_cast<void>(use_.release());
     return;
@@ -259,6 +268,7 @@ LmdbEnvironment::~LmdbEnvironment() {
   const std::lock_guard lock(table.mutex);
   handle_.reset();
   use_.reset();
+  keepInChildren(data_lock_);
   ::close(data_lock_);
   if (!known) return;
   const auto entry = table.entries.find({status.st_dev, status.st_ino});

@@ -24,8 +24,9 @@ class WriteTransaction;
 enum class CopiedPages : std::uint8_t { Filled, AsTheyAre };
 
 /// An open map file. A process opens a file once; opening it again returns the same environment. Thread-safe. A forked
-/// child process opens it again: what its parent opened refuses there to read and to write.
-/// Throws Error (StoreUnavailable) with file and remedy: not a map, newer format, locked, disk full.
+/// child process opens it again: what its parent opened, transactions too, refuses there to read, to write and to
+/// commit. Only a cursor that was open at the fork goes on, until the parent ends its transaction. Throws Error
+/// (StoreUnavailable) with file and remedy: not a map, newer format, locked, disk full.
 class Environment : public std::enable_shared_from_this<Environment> {
  public:
   static std::shared_ptr<Environment> open(const std::filesystem::path& file, OpenMode mode);

@@ -110,6 +110,8 @@ class LmdbEnvironment final : public Environment {
   /// Whether this process is a forked child of the one that opened the file: it may neither read nor write with this
   /// environment, and opens another one.
   bool isOfParent() const;
+  /// Throws Error (StoreUnavailable) when isOfParent().
+  void refuseParents() const;
   /// Whether read() throws LockFileOutdated now. Cost: that of read().
   bool isOutdated() const;
   void check(int code, std::string_view doing) const { checkLmdb(code, file_, doing); }
@@ -119,7 +121,6 @@ class LmdbEnvironment final : public Environment {
   void openTables();
 
  private:
-  void refuseParents() const;
   void lockAgainstProcesses();
   void requireName();
   void requireOneLockFile();
@@ -134,7 +135,7 @@ class LmdbEnvironment final : public Environment {
   std::unique_ptr<JointUse> use_;  ///< none: no lock file
   EnvHandle handle_;
   int data_lock_;
-  pid_t process_;  ///< that opened the file
+  std::uint64_t forks_;  ///< forkCount() of the process that opened the file
   bool can_write_, has_name_ = true;
   std::atomic<bool> writing_allowed_{false};
   std::atomic<int> format_{kMapFormat};
@@ -189,7 +190,7 @@ struct ReadTransaction::Impl {
   void check(int code, std::string_view doing) const { environment->check(code, doing); }
   /// `doing` is for the error, as in check().
   CursorHandle cursorOn(Table which, std::string_view doing) const;
-  MDB_txn* live() const;  ///< throws when the transaction has ended
+  MDB_txn* live() const;  ///< throws when the transaction has ended, or was begun before this process was forked
   void end();
   /// The commit that is read, or on which the write transaction builds.
   std::size_t commitBefore() const { return mdb_txn_id(live()) - (writing ? 1 : 0); }

@@ -229,6 +229,7 @@ void ReadTransaction::Impl::end() {
 
 MDB_txn* ReadTransaction::Impl::live() const {
   if (txn == nullptr) throw std::logic_error("the transaction has ended");
+  environment->refuseParents();
   return txn;
 }
 
@@ -258,6 +259,7 @@ std::uint64_t ReadTransaction::commitNumber() const {
 }
 
 void WriteTransaction::writeIndexes() {
+  impl().live();
   impl().requireSound();
   writeDrafts(impl());
   ++impl().generation;  // so that readers look for them in the file

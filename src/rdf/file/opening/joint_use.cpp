@@ -12,6 +12,8 @@
 #include <cerrno>
 #include <cstdint>
 
+#include "rdf/file/forks.hpp"
+
 namespace cluxel::rdf {
 
 namespace {
@@ -69,7 +71,8 @@ bool isMarkedBeside(int descriptor, off_t mark) {
 
 }  // namespace
 
-JointUse::JointUse(int map, Descriptor lock_file) : map_(map), lock_file_(std::move(lock_file)), process_(::getpid()) {
+JointUse::JointUse(int map, Descriptor lock_file) : map_(map), lock_file_(std::move(lock_file)), forks_(forkCount()) {
+  closeInChildren(lock_file_.get());
   const off_t map_mark = markOf(lock_file_.get()), lock_mark = markOf(map_);
   if (map_mark == 0 || lock_mark == 0) return;
   if (change(map_, map_mark, F_RDLCK)) map_mark_ = map_mark;
@@ -77,8 +80,12 @@ JointUse::JointUse(int map, Descriptor lock_file) : map_(map), lock_file_(std::m
 }
 
 JointUse::~JointUse() {
-  // A child process shares the marks of its parent: they end with the last descriptor, or here.
-  if (map_mark_ != 0 && process_ == ::getpid()) change(map_, map_mark_, F_UNLCK);
+  if (forks_ != forkCount()) {  // closed already
+    static_cast<void>(lock_file_.release());
+    return;
+  }
+  keepInChildren(lock_file_.get());
+  if (map_mark_ != 0) change(map_, map_mark_, F_UNLCK);
 }
 
 bool JointUse::isLockFileOfOthers() const {

@@ -4,6 +4,8 @@
 
 #include <sys/types.h>
 
+#include <cstdint>
+
 #include "rdf/file/file_guards.hpp"
 
 namespace cluxel::rdf {
@@ -33,7 +35,7 @@ class JointUse {
  private:
   int map_;
   Descriptor lock_file_;
-  pid_t process_;                       ///< that made the marks
+  std::uint64_t forks_;                 ///< forkCount() of the process that made the marks
   off_t map_mark_ = 0, lock_mark_ = 0;  ///< the byte in the map, and that in the lock file; 0: there is none
 };
 
