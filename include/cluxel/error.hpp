@@ -53,7 +53,7 @@ CLUXEL_API SourceLocation locate(std::string file, std::string_view text, std::s
 enum class ErrorKind : std::uint8_t {
   InvalidArgument,   ///< an option, name or combination of options is not allowed
   NotFound,          ///< nothing has the name that was asked for
-  FaultyInput,       ///< unreadable scans, faulty query, rules, ontology, labels or model
+  FaultyInput,       ///< unreadable scans, faulty query, update, RDF, rules, ontology, labels or model
   StoreUnavailable,  ///< the map cannot be opened, locked, read or written
   BudgetExceeded,    ///< a deadline, row or memory budget ran out
 };

@@ -13,7 +13,7 @@ enum class ExitCode : int {
   NegativeFinding = 1,   ///< a check failed, an ASK was false, an evaluation stayed below its bar
   Usage = 2,             ///< the command line is wrong
   NoRows = 3,            ///< a query had no solution, or nothing has the name
-  FaultyInput = 4,       ///< unreadable scans, faulty query, rules, ontology, labels or model
+  FaultyInput = 4,       ///< unreadable scans, faulty query, update, RDF, rules, ontology, labels or model
   StoreUnavailable = 5,  ///< the map cannot be opened, locked or written
   BudgetExceeded = 6,    ///< a deadline, row or memory budget ran out
 };
@@ -28,7 +28,7 @@ inline constexpr std::array<ExitCodeHelp, 7> kExitCodeHelp{
      {ExitCode::NegativeFinding, "negative finding (check failed, ASK false)"},
      {ExitCode::Usage, "usage"},
      {ExitCode::NoRows, "no rows"},
-     {ExitCode::FaultyInput, "unreadable input, faulty query or rules"},
+     {ExitCode::FaultyInput, "unreadable input, faulty query, update, RDF or rules"},
      {ExitCode::StoreUnavailable, "store unavailable"},
      {ExitCode::BudgetExceeded, "budget exceeded"}}};
 

@@ -15,8 +15,8 @@ namespace cluxel::rdf {
 
 using Pause = std::function<void()>;
 
-/// Another process, which does some work, waits when it calls its argument, and goes on when this object ends. It must
-/// be made while this process has no map open.
+/// Another process, which does some work, waits when it calls its argument, and goes on when this object ends. Maps
+/// that this process has open cannot be used there: the other process opens them again.
 class OtherProcess {
  public:
   /// `work` gives the exit status.

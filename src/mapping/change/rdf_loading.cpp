@@ -80,7 +80,7 @@ std::uint64_t loadFile(const fs::path& store, const rdf::RdfSource& source, bool
   return count;
 }
 
-/// Names the file and the line that state what was refused. The files are read again, except for pipes.
+/// Names the file and the line that state what was refused. The files are read again.
 [[noreturn]] void failAtPlace(const RefusedQuad& refused, const std::vector<fs::path>& files,
                               const RdfLoadParams& params) {
   std::error_code ignored;
