@@ -25,8 +25,8 @@ namespace cluxel::mapping {
 
 struct ChangeParams {
   unsigned threads = 1;
-  /// A batch is committed when it holds this many points. Absent: kBatchPoints where scans are added, or most of the map
-  /// loses some; else kStagePoints.
+  /// A batch is committed when it holds this many points. Absent: kBatchPoints where scans are added, or most of the
+  /// map loses some; else kStagePoints.
   std::optional<std::uint64_t> batch_points = {};
   bool dry_run = false;                       ///< compute what would change, and write nothing
   std::uint64_t stage_points = kStagePoints;  ///< batches of more than 1.5 times as many go through the stages in bands
