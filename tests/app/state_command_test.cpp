@@ -134,7 +134,7 @@ TEST_F(StateCommand, ABuildTakesNoQuadsOfOtherGraphsAsStatements) {
 
 TEST_F(StateCommand, AnUpdateMakesTheGroundNothingElse) {
   const std::string insert = " { <https://w3id.org/cluxel/map/object/" + one("Ground") + "> ";
-  expectError(run("update " + map().string() + " -e 'INSERT DATA" + insert + "a clx:Building }'"), 2,
+  expectError(run("update " + map().string() + " -e 'INSERT DATA" + insert + "a clx:Building }'"), 4,
               "is one object over all of the map");
   EXPECT_EQ(run("update " + map().string() + " -e 'INSERT DATA" + insert + "rdfs:label \"yard\" }'").code, 0);
 }

@@ -82,7 +82,7 @@ TEST(PackedPoints, DamagedOnesAreRefused) {
 
 /// What the second format of maps wrote: a length before each array, and kinds with an earlier version.
 TEST(StoredForms, OfEarlierVersionsAreRefusedInPlainWordsAndTheRdfIsStillRead) {
-  const SmallCampus campus({.seed = 3, .stops = 1, .size_m = 45, .points_per_stop = 1'500});
+  const SmallCampus campus({.seed = 3, .stops = 2, .size_m = 45, .points_per_stop = 1'500});
   const ScratchFolder folder;
   const fs::path map = folder.path() / "map.clx";
   buildMap(scansOf(campus.files()), shippedInputs(), map, {}, silence());
