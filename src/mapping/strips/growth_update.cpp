@@ -57,11 +57,11 @@ class GrowthUpdate {
   /// sooner. Where nearly all tiles changed, strips take as long, and need no list of all objects.
   bool isScattered() const {
     constexpr double kNearlyAll = 0.9;
-    const auto all = static_cast<double>(all_.size());
-    return static_cast<double>(
-               other_.size())<kNearlyAll * all&& static_cast<double>(perception::withRing(other_, all_).size())>
-               work_.params.max_window_share *
-           all;
+    const auto shareOf = [this](const TileSet& tiles) {
+      return static_cast<double>(tiles.size()) / static_cast<double>(all_.size());
+    };
+    const double around = shareOf(perception::withRing(other_, all_));
+    return shareOf(other_) < kNearlyAll && around > work_.params.max_window_share;
   }
 
   std::optional<SemanticUpdate> run() {
