@@ -3,6 +3,7 @@
 #include "mapping/change/map_change.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <set>
 
 #include "cluxel/error.hpp"
@@ -150,38 +151,57 @@ std::uint64_t usualBatchOf(const std::vector<Cloud>& clouds, const rdf::ReadTran
   return 2 * below.size() > tiles.size() ? kBatchPoints : kStagePoints;
 }
 
+/// The name of an operation in the history, what it has done with a scan, and the points of a batch.
+struct Batches {
+  std::string operation, done;
+  std::uint64_t points = 0;
+};
+
+/// Changes one scan in a transaction, and gives its cloud for the history.
+using ScanChange = std::function<Cloud(rdf::WriteTransaction&, std::size_t scan, PointChanges&)>;
+
+/// Changes `scans` scans, and commits batch by batch. `changed` counts those that are committed.
+void changeInBatches(MapEditor& editor, rdf::WriteTransaction first, std::size_t scans, const Batches& batches,
+                     std::size_t& changed, const ScanChange& change) {
+  std::optional<rdf::WriteTransaction> transaction(std::move(first));
+  PointChanges changes;
+  std::vector<Cloud> of_batch;
+  std::uint64_t points = 0;
+  try {
+    for (std::size_t i = 0; i < scans; ++i) {
+      if (!transaction) transaction.emplace(editor.begin());
+      of_batch.push_back(change(*transaction, i, changes));
+      points += of_batch.back().point_count;
+      editor.sink().progress("scans", i + 1, scans);
+      const std::size_t left = scans - i - 1;
+      if (left > 0 && !isFull(points, of_batch.size(), left, batches.points)) continue;
+      editor.commit(*transaction, batches.operation, std::exchange(changes, {}), of_batch);
+      changed += of_batch.size();
+      of_batch.clear();
+      points = 0;
+      if (!editor.params().dry_run) transaction.reset();
+    }
+  } catch (...) {
+    noteDone(editor, changed, batches.done);
+    throw;
+  }
+}
+
 ChangeReport removedFrom(const fs::path& file, const std::vector<scan::ScanId>& scans, const ChangeParams& params,
                          ProgressSink& sink) {
   requireOnce(scans);
   MapEditor editor(file, params, sink);
-  std::optional<rdf::WriteTransaction> transaction(editor.begin());
-  const std::vector<Cloud> clouds = cloudsToRetract(scans, *transaction, sink);
-  if (clouds.size() == storedClouds(*transaction).size())
+  rdf::WriteTransaction transaction = editor.begin();
+  const std::vector<Cloud> clouds = cloudsToRetract(scans, transaction, sink);
+  if (clouds.size() == storedClouds(transaction).size())
     throw Error(ErrorKind::InvalidArgument, file.string() + ": no scan would be left; remove the file instead");
   const std::uint64_t batch_points =
-      batchSizeOf(clouds, *transaction, params.batch_points.value_or(usualBatchOf(clouds, *transaction)));
-  PointChanges changes;
-  std::vector<Cloud> removed;
-  std::uint64_t points = 0;
-  try {
-    for (std::size_t i = 0; i < clouds.size(); ++i) {
-      if (!transaction) transaction.emplace(editor.begin());
-      changes.anew = unionOf(std::move(changes.anew), removeScan(*transaction, clouds[i].id));
-      removed.push_back(clouds[i]);
-      points += clouds[i].point_count;
-      sink.progress("scans", i + 1, clouds.size());
-      const std::size_t left = clouds.size() - i - 1;
-      if (left > 0 && !isFull(points, removed.size(), left, batch_points)) continue;
-      editor.commit(*transaction, "retract", std::exchange(changes, {}), removed);
-      editor.result().scans_removed += removed.size();
-      removed.clear();
-      points = 0;
-      if (!params.dry_run) transaction.reset();
-    }
-  } catch (...) {
-    noteDone(editor, editor.result().scans_removed, "retracted");
-    throw;
-  }
+      batchSizeOf(clouds, transaction, params.batch_points.value_or(usualBatchOf(clouds, transaction)));
+  changeInBatches(editor, std::move(transaction), clouds.size(), {"retract", "retracted", batch_points},
+                  editor.result().scans_removed, [&](rdf::WriteTransaction& now, std::size_t i, PointChanges& changes) {
+                    changes.anew = unionOf(std::move(changes.anew), removeScan(now, clouds[i].id));
+                    return clouds[i];
+                  });
   return editor.takeReport();
 }
 
@@ -211,42 +231,26 @@ ChangeReport movedIn(const fs::path& file, const std::vector<ScanPose>& poses, c
   for (const ScanPose& pose : poses) named.push_back(pose.scan);
   requireOnce(named);
   MapEditor editor(file, params, sink);
-  std::optional<rdf::WriteTransaction> transaction(editor.begin());
-  const std::vector<Move> moves = movesTo(poses, *transaction);
+  rdf::WriteTransaction transaction = editor.begin();
+  const std::vector<Move> moves = movesTo(poses, transaction);
   std::vector<Cloud> before;
   for (const Move& move : moves) before.push_back(move.before);
-  const std::uint64_t batch_points = batchSizeOf(before, *transaction, params.batch_points.value_or(kStagePoints));
-  PointChanges changes;
-  std::vector<Cloud> moved;
-  std::uint64_t points = 0;
-  try {
-    for (std::size_t i = 0; i < moves.size(); ++i) {
-      if (!transaction) transaction.emplace(editor.begin());
-      // Points that stay where they are change no tile, but what a sensor sees decides, too.
-      if (!moves[i].before.has_pose) editor.decideAnew();
-      scan::Scan scan = storedScan(*transaction, moves[i].pose.scan);
-      scan.T_map_sensor = moves[i].pose.T_map_sensor;
-      scan.has_pose = true;
-      changes.anew = unionOf(std::move(changes.anew), removeScan(*transaction, scan.id));
-      for (const auto& [tile, segment] : storeScan(*transaction, scan)) {
-        changes.anew.insert(tile);
-        changes.stored_points[tile] += segment.size();
-      }
-      moved.push_back(requiredCloud(*transaction, scan.id));
-      points += moved.back().point_count;
-      sink.progress("scans", i + 1, moves.size());
-      const std::size_t left = moves.size() - i - 1;
-      if (left > 0 && !isFull(points, moved.size(), left, batch_points)) continue;
-      editor.commit(*transaction, "repose", std::exchange(changes, {}), moved);
-      editor.result().scans_moved += moved.size();
-      moved.clear();
-      points = 0;
-      if (!params.dry_run) transaction.reset();
+  const std::uint64_t batch_points = batchSizeOf(before, transaction, params.batch_points.value_or(kStagePoints));
+  const auto move = [&](rdf::WriteTransaction& now, std::size_t i, PointChanges& changes) {
+    // Points that stay where they are change no tile, but what a sensor sees decides, too.
+    if (!moves[i].before.has_pose) editor.decideAnew();
+    scan::Scan scan = storedScan(now, moves[i].pose.scan);
+    scan.T_map_sensor = moves[i].pose.T_map_sensor;
+    scan.has_pose = true;
+    changes.anew = unionOf(std::move(changes.anew), removeScan(now, scan.id));
+    for (const auto& [tile, segment] : storeScan(now, scan)) {
+      changes.anew.insert(tile);
+      changes.stored_points[tile] += segment.size();
     }
-  } catch (...) {
-    noteDone(editor, editor.result().scans_moved, "moved");
-    throw;
-  }
+    return requiredCloud(now, scan.id);
+  };
+  changeInBatches(editor, std::move(transaction), moves.size(), {"repose", "moved", batch_points},
+                  editor.result().scans_moved, move);
   return editor.takeReport();
 }
 
