@@ -66,7 +66,12 @@ double shareOfHits(std::span<const ScanVotes> votes) {
   double hits = 0, covered = 0;
   for (const ScanVotes& vote : votes)
     if (vote.hits.any()) hits += count(vote.hits), covered += count(vote.hits) + count(vote.seen_through);
-  return covered == 0 ? 0.98 : std::clamp(hits / covered, 0.3, 0.98);
+  return shareOfHits(hits, covered);
+}
+
+double shareOfHits(double hits, double looks) {
+  constexpr double kLeast = 0.3, kMost = 0.98;
+  return looks == 0 ? kMost : std::clamp(hits / looks, kLeast, kMost);
 }
 
 Visibility visibilityOf(std::span<const ScanVotes> votes) {
@@ -81,6 +86,11 @@ double logOddsOfPresence(std::span<const ScanVotes> votes, double share_of_hits,
   double sum = 0;
   for (const ScanVotes& vote : votes) sum += hit * count(vote.hits) + through * count(vote.seen_through);
   return sum;
+}
+
+double logOddsOfPresence(double hits, double seen_through, double share_of_hits, const PresenceParams& params) {
+  return hits * std::log(share_of_hits / params.hit_when_gone) +
+         seen_through * std::log((1 - share_of_hits) / (1 - params.hit_when_gone));
 }
 
 bool showAbsence(std::span<const ScanVotes> votes, const Visibility& thing, const PresenceParams& params) {

@@ -45,9 +45,14 @@ struct Presence {
 /// for a crown that lets rays through.
 double shareOfHits(std::span<const ScanVotes> votes);
 
+/// The same of numbers of hits and of looks, both alike in unit; the upper limit when there was no look.
+double shareOfHits(double hits, double looks);
+
 /// Log-odds of "there": a hit counts log(p / h), a place seen through log((1 - p) / (1 - h)), with p the share of hits
 /// and h `hit_when_gone`.
 double logOddsOfPresence(std::span<const ScanVotes> votes, double share_of_hits, const PresenceParams& params);
+/// The same of numbers of hits, and of places seen through.
+double logOddsOfPresence(double hits, double seen_through, double share_of_hits, const PresenceParams& params);
 
 /// What is known of a thing from all scans.
 struct Visibility {

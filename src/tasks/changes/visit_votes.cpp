@@ -25,18 +25,17 @@ std::vector<std::uint32_t> visitsWhere(const VisitVotes& votes, double share_of_
 
 /// Log-odds of "there".
 double logOddsOf(const LookCounts& looks, double share_of_hits) {
-  return static_cast<double>(looks.hits) * std::log(share_of_hits / kPresence.hit_when_gone) +
-         static_cast<double>(looks.passed) * std::log((1 - share_of_hits) / (1 - kPresence.hit_when_gone));
+  return perception::logOddsOfPresence(static_cast<double>(looks.hits), static_cast<double>(looks.passed),
+                                       share_of_hits, kPresence);
 }
 
 /// The share of hits on the visit that speaks most for the thing. Other visits may have hit what stood there before it.
 double shareOnBestVisit(std::span<const LookCounts> visits) {
-  constexpr double kLeast = 0.3, kMost = 0.98;  // as shareOfHits()
-  double share = kMost, best = -std::numeric_limits<double>::infinity();
+  double share = perception::shareOfHits(0, 0), best = -std::numeric_limits<double>::infinity();
   for (const LookCounts& looks : visits) {
-    const auto all = static_cast<double>(looks.hits + looks.passed);
+    const std::size_t all = looks.hits + looks.passed;
     if (all == 0) continue;
-    const double of_visit = std::clamp(static_cast<double>(looks.hits) / all, kLeast, kMost);
+    const double of_visit = perception::shareOfHits(static_cast<double>(looks.hits), static_cast<double>(all));
     const double log_odds = logOddsOf(looks, of_visit);
     if (log_odds > best) best = log_odds, share = of_visit;
   }
