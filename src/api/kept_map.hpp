@@ -2,24 +2,23 @@
 // What a map object keeps between its calls, and the locks of its threads.
 #pragma once
 
-#include <sys/types.h>
-#include <unistd.h>
-
 #include <atomic>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <mutex>
 
 #include "mapping/newest_map.hpp"
+#include "rdf/file/forks.hpp"
 
 namespace cluxel {
 
 struct KeptMap {
   explicit KeptMap(const std::filesystem::path& file) : map(file) {}
 
-  const pid_t process = ::getpid();
-  std::mutex writing_mutex;  ///< taken before the other; held while callbacks run
-  std::mutex reading_mutex;  ///< guards `map`; not held while callbacks run
+  const std::uint64_t forks = rdf::forkCount();  ///< of the process that made it
+  std::mutex writing_mutex;                      ///< taken before the other; held while callbacks run
+  std::mutex reading_mutex;                      ///< guards `map`; not held while callbacks run
   mapping::NewestMap map;
 };
 
@@ -31,13 +30,13 @@ class KeptMapOfProcess {
   KeptMapOfProcess(const KeptMapOfProcess&) = delete;
   KeptMapOfProcess& operator=(const KeptMapOfProcess&) = delete;
   ~KeptMapOfProcess() {
-    if (const KeptMap* kept = kept_; kept->process == ::getpid()) delete kept;
+    if (const KeptMap* kept = kept_; kept->forks == rdf::forkCount()) delete kept;
   }
 
-  /// Thread-safe. Cost: a system call.
+  /// Thread-safe.
   KeptMap& get() const {
     KeptMap* kept = kept_;
-    if (kept->process == ::getpid()) return *kept;
+    if (kept->forks == rdf::forkCount()) return *kept;
     auto own = std::make_unique<KeptMap>(file_);
     return kept_.compare_exchange_strong(kept, own.get()) ? *own.release() : *kept;
   }

@@ -33,15 +33,6 @@ class ForkedProcess : public MapFile {
       return work();
     });
   }
-  static std::string refusalOf(const std::function<void()>& work) {
-    try {
-      work();
-    } catch (const Error& error) {
-      EXPECT_EQ(error.kind(), ErrorKind::StoreUnavailable);
-      return error.what();
-    }
-    return "no refusal";
-  }
 };
 
 TEST_F(ForkedProcess, OpensTheMapForItself) {

@@ -7,6 +7,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <functional>
 #include <string>
 
 #include "cluxel/error.hpp"
@@ -35,6 +36,16 @@ class MapFile : public testing::Test {
       return error.what();
     }
     return "opened";
+  }
+
+  static std::string refusalOf(const std::function<void()>& work) {
+    try {
+      work();
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::StoreUnavailable);
+      return error.what();
+    }
+    return "no refusal";
   }
 
   /// Runs `work` in a child process. Returns its exit status, or the negative number of the signal that ended it.

@@ -48,15 +48,6 @@ class MapOpening : public MapFile {
   void moveAwayInBetween() {
     before_opening = [this] { fs::rename(file_, named("away.clx")); };
   }
-  static std::string refusalOf(const std::function<void()>& work) {
-    try {
-      work();
-    } catch (const Error& error) {
-      EXPECT_EQ(error.kind(), ErrorKind::StoreUnavailable);
-      return error.what();
-    }
-    return "no refusal";
-  }
 };
 
 TEST_F(MapOpening, MakesNoFileWhereAMapWasMovedAway) {

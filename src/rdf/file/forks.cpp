@@ -47,6 +47,7 @@ std::atomic<std::uint64_t>& wordOf(int descriptor) {
 }  // namespace
 
 std::uint64_t forkCount() {
+  watchForks();
   return forks.load(std::memory_order_relaxed);
 }
 

@@ -6,7 +6,7 @@
 
 namespace cluxel::rdf {
 
-/// How many forks lie between this process and the first one that used the library. Cost: reads one number.
+/// How many forks lie between this process and the first one that asked. Cost: reads one number.
 std::uint64_t forkCount();
 
 /// A forked child closes the descriptor before it does anything else. flock() and open file description locks belong to
