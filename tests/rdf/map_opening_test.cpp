@@ -116,20 +116,40 @@ TEST_F(MapOpening, DoesNotWaitWithoutEndForAProcessThatIsStopped) {
   auto second = refused([&] { replaceMapFile(fresh, replaced); });
   auto third = std::async(std::launch::async, [&] {
     return inChild([&] {
-      return refusalOf([&] { Environment::open(opened, OpenMode::ReadOnly); }).find("may be stopped") !=
+      return refusalOf([&] { Environment::open(opened, OpenMode::ReadOnly); }).find("one or more processes") !=
                      std::string::npos
                  ? 0
                  : 1;
     });
   });
-  EXPECT_THAT(first.get(), HasSubstr("map.clx: another process has been opening or replacing the map"));
-  EXPECT_THAT(second.get(), HasSubstr("replaced.clx: another process has been opening or replacing the map"));
+  EXPECT_THAT(first.get(), HasSubstr("map.clx: one or more processes have been opening or replacing the map"));
+  EXPECT_THAT(second.get(), HasSubstr("replaced.clx: one or more processes have been opening or replacing the map"));
   EXPECT_EQ(third.get(), 0);
   EXPECT_EQ(within_lmdb.end(), 0);  // the last first: it has copies of the pipes of the others
   EXPECT_EQ(opening.end(), 0);
   EXPECT_EQ(replacing.end(), 0);
   EXPECT_EQ(Environment::open(opened, OpenMode::ReadOnly)->read().block("t", "one"), "1");
   EXPECT_TRUE(fs::exists(fresh));
+}
+
+TEST_F(MapOpening, LeavesTheNameToOthersWhileItWaitsForItsTurn) {
+  OtherProcess within_lmdb([&](const Pause& pause) {
+    const Descriptor lock_file(::open(lockFileOf(file_).c_str(), O_RDWR | O_CLOEXEC));
+    const auto turn = NameLock::withoutWaiting(lock_file.get());
+    pause();
+    return turn ? 0 : 1;
+  });
+  auto waiting =
+      std::async(std::launch::async, [&] { return open(OpenMode::ReadOnly)->read().block("t", "one") == "1"; });
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  EXPECT_EQ(refusalOf([&] {
+              const Descriptor map(::open(file_.c_str(), O_RDWR | O_CLOEXEC));
+              const NameLock lock(map.get(), NameLock::Kind::Replacing, file_);
+            }),
+            "no refusal");
+  EXPECT_EQ(waiting.wait_for(std::chrono::seconds(0)), std::future_status::timeout);
+  EXPECT_EQ(within_lmdb.end(), 0);
+  EXPECT_TRUE(waiting.get());
 }
 
 TEST_F(MapOpening, WaitsForAnExchangeThatIsUnderWay) {

@@ -26,7 +26,7 @@ namespace {
 
 constexpr auto kLockPatience = std::chrono::milliseconds(1500);
 constexpr auto kLockPause = std::chrono::milliseconds(10);
-/// Who repairs a lock file keeps the name for up to 3 s (see openLmdbByName()).
+/// Longer than the 3 s for which who finds the number of a lock file wrong may keep the name (see openLmdbByName()).
 constexpr auto kNamePatience = std::chrono::seconds(5);
 /// Short, so that who replaces a map comes to it between many who open it.
 constexpr auto kNamePause = std::chrono::milliseconds(2);
@@ -87,14 +87,23 @@ LowDescriptors::~LowDescriptors() {
 }
 
 NameLock::NameLock(int descriptor, Kind kind, const fs::path& map) : descriptor_(descriptor) {
-  const auto deadline = std::chrono::steady_clock::now() + kNamePatience;
-  while (!tryLockNameByte(descriptor_, kind == Kind::Opening ? F_RDLCK : F_WRLCK)) {
-    if (std::chrono::steady_clock::now() > deadline)
-      throw MapBusy(map,
-                    "another process has been opening or replacing the map for more than 5 s; it may be stopped: let "
-                    "it go on, or end it, and run again");
-    std::this_thread::sleep_for(kNamePause);
-  }
+  NamePatience patience(map);
+  while (!tryLockNameByte(descriptor_, kind == Kind::Opening ? F_RDLCK : F_WRLCK)) patience.wait();
+}
+
+std::unique_ptr<NameLock> NameLock::withoutWaiting(int descriptor) {
+  if (!tryLockNameByte(descriptor, F_WRLCK)) return nullptr;
+  return std::unique_ptr<NameLock>(new NameLock(descriptor));
+}
+
+NamePatience::NamePatience(const fs::path& map) : map_(map), end_(std::chrono::steady_clock::now() + kNamePatience) {}
+
+void NamePatience::wait() const {
+  if (std::chrono::steady_clock::now() > end_)
+    throw MapBusy(map_,
+                  "one or more processes have been opening or replacing the map for more than 5 s; when one is "
+                  "stopped, let it go on, or end it; then run again");
+  std::this_thread::sleep_for(kNamePause);
 }
 
 NameLock::~NameLock() {

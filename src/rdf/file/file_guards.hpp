@@ -7,9 +7,11 @@
 #include <unistd.h>
 
 #include <array>
+#include <chrono>
 #include <compare>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <utility>
 
 namespace cluxel::rdf {
@@ -71,18 +73,35 @@ class LowDescriptors {
   std::array<int, 3> taken_{-1, -1, -1};
 };
 
+/// The waiting for those who open or replace a map.
+class NamePatience {
+ public:
+  explicit NamePatience(const std::filesystem::path& map);
+  /// Pauses for a moment; throws MapBusy, which names the map, 5 s after the construction.
+  void wait() const;
+
+ private:
+  std::filesystem::path map_;
+  std::chrono::steady_clock::time_point end_;
+};
+
 /// A shared lock for opening a map file by its name, or an exclusive one for replacing it. Held briefly: for some
-/// renames, or while LMDB opens a file and its number is compared. Has no effect on file systems without such locks.
+/// renames, or while LMDB opens a file and its number is compared; up to 3 s where the number is wrong. Has no effect on
+/// file systems without such locks.
 class NameLock {
  public:
   enum class Kind { Opening, Replacing };
   /// Waits up to 5 s for another process; throws MapBusy, which names `map`.
   NameLock(int descriptor, Kind kind, const std::filesystem::path& map);
+  /// An exclusive lock, or none when another process has one.
+  static std::unique_ptr<NameLock> withoutWaiting(int descriptor);
   NameLock(const NameLock&) = delete;
   NameLock& operator=(const NameLock&) = delete;
   ~NameLock();
 
  private:
+  explicit NameLock(int descriptor) : descriptor_(descriptor) {}
+
   int descriptor_;
 };
 

@@ -77,10 +77,11 @@ OpenedLmdb openWithoutLockFile(const LmdbRequest& request, const LockFile& lock)
 }
 
 /// LMDB locks the lock file while it opens it, and another process would wait for that without end. So they come to it
-/// one after the other, and wait here.
+/// one after the other. None: another process is there.
 EnvHandle openBesideOthers(const LmdbRequest& request, const JointUse& use) {
-  const NameLock turn(use.lockFile(), NameLock::Kind::Replacing, request.file);
-  const DescriptorNames names(request.descriptor, use.lockFile());
+  const DescriptorNames names(request.descriptor, use.lockFile());  // the temporary folder may be slow
+  const auto turn = NameLock::withoutWaiting(use.lockFile());
+  if (!turn) return nullptr;
   return openLmdb(names.map().empty() ? request.file : names.map(), request.file, request.file_size,
                   request.can_write ? request.flags : MDB_RDONLY);
 }
@@ -95,6 +96,7 @@ OpenedLmdb openWithLockFile(const LmdbRequest& request) {
   if (request.mode == OpenMode::ReadOnly && isWrittenElsewhere(request, *opened.use))
     return withOutcome(LmdbOutcome::NeedsCopy);
   opened.handle = openBesideOthers(request, *opened.use);
+  if (!opened.handle) return withOutcome(LmdbOutcome::Taken);
   const bool is_named = isNamed(identityOf(request.descriptor, request.file), request.file);
   if (!is_named || !isOpen(opened.handle.get(), request)) return withOutcome(LmdbOutcome::Renamed);
   if (!hasRightNumber(request, opened)) return withOutcome(LmdbOutcome::OutdatedLockFile);
@@ -121,25 +123,7 @@ bool setLockFileAside(const LmdbRequest& request) {
                   "again");
 }
 
-}  // namespace
-
-EnvHandle openLmdb(const fs::path& name, const fs::path& file, std::uint64_t file_size, unsigned flags) {
-  int code = 0;
-  for (std::size_t map_size = kMaxMapBytes; map_size >= kSmallestMap && map_size > file_size; map_size /= 2) {
-    MDB_env* raw = nullptr;
-    checkLmdb(mdb_env_create(&raw), file, "open the map");
-    EnvHandle handle(raw);
-    mdb_env_set_maxreaders(raw, kMaxReaders);
-    mdb_env_set_maxdbs(raw, kTableCount);
-    mdb_env_set_mapsize(raw, map_size);
-    code = mdb_env_open(raw, name.c_str(), flags | MDB_NOSUBDIR | MDB_NOTLS, 0666);
-    if (code == MDB_SUCCESS) return handle;
-    if (code != ENOMEM && code != EINVAL) break;  // EINVAL: Valgrind's limit
-  }
-  failStore(file, code, "open the map");
-}
-
-OpenedLmdb openLmdbByName(const LmdbRequest& request) {
+OpenedLmdb openByNameOnce(const LmdbRequest& request) {
   const FileIdentity identity = identityOf(request.descriptor, request.file);
   OpenedLmdb opened;
   {
@@ -158,6 +142,34 @@ OpenedLmdb openLmdbByName(const LmdbRequest& request) {
   }
   if (request.mode != OpenMode::ReadOnly) failOtherLockFile(request, opened.outcome);
   return withOutcome(LmdbOutcome::NeedsCopy);
+}
+
+}  // namespace
+
+EnvHandle openLmdb(const fs::path& name, const fs::path& file, std::uint64_t file_size, unsigned flags) {
+  int code = 0;
+  for (std::size_t map_size = kMaxMapBytes; map_size >= kSmallestMap && map_size > file_size; map_size /= 2) {
+    MDB_env* raw = nullptr;
+    checkLmdb(mdb_env_create(&raw), file, "open the map");
+    EnvHandle handle(raw);
+    mdb_env_set_maxreaders(raw, kMaxReaders);
+    mdb_env_set_maxdbs(raw, kTableCount);
+    mdb_env_set_mapsize(raw, map_size);
+    code = mdb_env_open(raw, name.c_str(), flags | MDB_NOSUBDIR | MDB_NOTLS, 0666);
+    if (code == MDB_SUCCESS) return handle;
+    if (code != ENOMEM && code != EINVAL) break;  // EINVAL: Valgrind's limit
+  }
+  failStore(file, code, "open the map");
+}
+
+/// The name is free while it waits, so that others can replace the map.
+OpenedLmdb openLmdbByName(const LmdbRequest& request) {
+  const NamePatience patience(request.file);
+  while (true) {
+    OpenedLmdb opened = openByNameOnce(request);
+    if (opened.outcome != LmdbOutcome::Taken) return opened;
+    patience.wait();
+  }
 }
 
 }  // namespace cluxel::rdf

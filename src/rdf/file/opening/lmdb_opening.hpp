@@ -27,6 +27,7 @@ enum class LmdbOutcome : std::uint8_t {
   Renamed,    ///< the name refers to another file by now
   NeedsCopy,  ///< this process cannot register as a reader, so it has to read a private copy
   // Only while the map is being opened:
+  Taken,            ///< another process is opening a map with the lock file
   ForeignLockFile,  ///< the lock file serves another file that had the name
   OutdatedLockFile  ///< the lock file does not know the newest commit
 };
