@@ -86,8 +86,8 @@ class NamePatience {
 };
 
 /// A shared lock for opening a map file by its name, or an exclusive one for replacing it. Held briefly: for some
-/// renames, or while LMDB opens a file and its number is compared; up to 3 s where the number is wrong. Has no effect on
-/// file systems without such locks.
+/// renames, or while LMDB opens a file and its number is compared; up to 3 s where the number is wrong. Has no effect
+/// on file systems without such locks.
 class NameLock {
  public:
   enum class Kind { Opening, Replacing };
