@@ -11,6 +11,8 @@
 #include "mapping/change/map_change.hpp"
 #include "mapping/change/map_update.hpp"
 #include "mapping/small_campus.hpp"
+#include "rdf/file/map_replacement.hpp"
+#include "rdf/other_process.hpp"
 #include "sparql/query_engine.hpp"
 
 namespace cluxel::mapping {
@@ -156,6 +158,36 @@ TEST_F(MapMerge, ReplacesNoFileThatIsNoMap) {
     EXPECT_THROW(mergeMaps(maps, target(), params, silence()), Error);
     EXPECT_EQ(readFile(target()), "what somebody wrote\n");
   }
+}
+
+/// What took hours would be lost.
+TEST_F(MapMerge, WaitsForWhoWritesTheFileThatItReplaces) {
+  const fs::path a = built({0, 1}, "a"), b = built({2, 3}, "b");
+  fs::copy_file(a, target());
+  rdf::OtherProcess writer([&](const rdf::Pause& pause) {
+    const rdf::WriteTransaction transaction = rdf::writeMap(target());
+    pause();
+    return 0;
+  });
+  class EndingSink : public ProgressSink {
+   public:
+    explicit EndingSink(rdf::OtherProcess& writer) : writer_(writer) {}
+    void note(std::string_view text) override {
+      if (text.find("another process writes") == std::string_view::npos) return;
+      ++waits;
+      writer_.end();
+    }
+    int waits = 0;
+
+   private:
+    rdf::OtherProcess& writer_;
+  };
+  EndingSink sink(writer);
+  MergeParams params;
+  params.force = true;
+  mergeMaps({{a}, {b}}, target(), params, sink);
+  EXPECT_EQ(sink.waits, 1);
+  EXPECT_EQ(canonicalText(target()), *whole);
 }
 
 TEST_F(MapMerge, DoesNotCareWhereTheInputsWereRead) {

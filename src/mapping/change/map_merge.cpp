@@ -17,6 +17,7 @@
 #include "mapping/facts/map_history.hpp"
 #include "mapping/map_reader.hpp"
 #include "mapping/map_state.hpp"
+#include "mapping/merged_replacement.hpp"
 #include "mapping/statements/statement_history.hpp"
 #include "mapping/window/former_objects.hpp"
 #include "mapping/window/lent_decisions.hpp"
@@ -86,7 +87,7 @@ class Merge {
     if (temporary_) sink_.note(noteOfCopy(target_));
     rdf::Environment::open(maps_[base_].file, rdf::OpenMode::ReadOnly)->compactTo(beside_, rdf::CopiedPages::AsTheyAre);
     ChangeReport report = addOthers();
-    if (!params_.change.dry_run) replaceTarget();
+    if (!params_.change.dry_run) replaceByMerged(beside_, target_, sink_);
     return report;
   }
 
@@ -312,14 +313,6 @@ class Merge {
       additions.add(scan, clouds.size() - i - 1);
       sink_.progress("scans", i + 1, clouds.size());
     }
-  }
-
-  void replaceTarget() {
-    if (!fs::exists(target_) || fs::is_empty(target_)) return rdf::replaceMapFile(beside_, target_);
-    const rdf::WriteTransaction old = rdf::writeMap(target_);
-    if (!operatorStatements(rdf::QuadReader(static_cast<const rdf::ReadTransaction&>(old))).empty())
-      sink_.note(target_.string() + ": is replaced; the operator statements that it had are dropped");
-    rdf::replaceMapFile(beside_, target_);
   }
 
   void removeBeside() const {
