@@ -111,15 +111,6 @@ std::vector<Cloud> cloudsToRetract(const std::vector<scan::ScanId>& scans, const
   return clouds;
 }
 
-/// Those of the tiles that the bounds of a cloud reach, most of which lie near each other.
-TileSet tilesBelow(const Cloud& cloud, const TileSet& tiles) {
-  const perception::TileKey low = perception::tileOf(cloud.min), high = perception::tileOf(cloud.max);
-  TileSet below;
-  for (auto tile = tiles.lower_bound({low.x, low.y}); tile != tiles.end() && tile->x <= high.x; ++tile)
-    if (tile->y >= low.y && tile->y <= high.y) below.insert(*tile);
-  return below;
-}
-
 /// The size of batches in which these clouds of the map move or go, in points. They are one batch when batches would
 /// compute each tile more than twice on average, for instance when all scans see the same place.
 std::uint64_t batchSizeOf(const std::vector<Cloud>& clouds, const rdf::ReadTransaction& transaction,
@@ -132,7 +123,7 @@ std::uint64_t batchSizeOf(const std::vector<Cloud>& clouds, const rdf::ReadTrans
   TileSet all, of_batch;
   std::size_t computed = 0, scans = 0;
   for (std::size_t i = 0; i < clouds.size(); ++i) {
-    of_batch.merge(tilesBelow(clouds[i], tiles));
+    of_batch.merge(tilesInBounds(clouds[i], tiles));
     batch_points += clouds[i].point_count;
     const std::size_t left = clouds.size() - i - 1;
     if (left > 0 && !isFull(batch_points, ++scans, left, size)) continue;
@@ -146,9 +137,9 @@ std::uint64_t batchSizeOf(const std::vector<Cloud>& clouds, const rdf::ReadTrans
 /// Clouds that reach most of the map go together when nothing else is asked for: all is decided anew, once.
 std::uint64_t usualBatchOf(const std::vector<Cloud>& clouds, const rdf::ReadTransaction& transaction) {
   const TileSet tiles = storedTiles(transaction);
-  TileSet below;
-  for (const Cloud& cloud : clouds) below.merge(tilesBelow(cloud, tiles));
-  return 2 * below.size() > tiles.size() ? kBatchPoints : kStagePoints;
+  TileSet reached;
+  for (const Cloud& cloud : clouds) reached.merge(tilesInBounds(cloud, tiles));
+  return 2 * reached.size() > tiles.size() ? kBatchPoints : kStagePoints;
 }
 
 /// The name of an operation in the history, what it has done with a scan, and the points of a batch.

@@ -136,17 +136,6 @@ bool isThere(rdf::WriteTransaction& transaction, const Cloud& given) {
                    "give each scan once; to correct its pose, move the scan in the map", Remedy::MoveScans);
 }
 
-/// The lowest x and y of those of the tiles in which points of the cloud can lie, by its bounds.
-std::optional<perception::TileKey> lowestBelow(const Cloud& cloud, const TileSet& tiles) {
-  const perception::TileKey low = perception::tileOf(cloud.min), high = perception::tileOf(cloud.max);
-  std::optional<perception::TileKey> lowest;
-  for (const perception::TileKey& tile : tiles) {
-    if (tile.x < low.x || tile.x > high.x || tile.y < low.y || tile.y > high.y) continue;
-    lowest = lowest ? perception::TileKey{std::min(lowest->x, tile.x), std::min(lowest->y, tile.y)} : tile;
-  }
-  return lowest;
-}
-
 /// The packed points of a scan. They stay until the next write.
 std::string_view requiredPoints(const rdf::ReadTransaction& transaction, const scan::ScanId& id) {
   if (const auto block = transaction.block(tables::kScanPoints, tables::keyOf(id))) return *block;
@@ -180,6 +169,14 @@ std::vector<perception::SceneView> viewsOf(const std::vector<Cloud>& clouds) {
   return views;
 }
 
+TileSet tilesInBounds(const Cloud& cloud, const TileSet& tiles) {
+  const perception::TileKey low = perception::tileOf(cloud.min), high = perception::tileOf(cloud.max);
+  TileSet reached;
+  for (auto tile = tiles.lower_bound({low.x, low.y}); tile != tiles.end() && tile->x <= high.x; ++tile)
+    if (tile->y >= low.y && tile->y <= high.y) reached.insert(*tile);
+  return reached;
+}
+
 std::vector<scan::ScanId> idsOf(const std::vector<Cloud>& clouds) {
   std::vector<scan::ScanId> ids;
   for (const Cloud& cloud : clouds) ids.push_back(cloud.id);
@@ -205,7 +202,11 @@ void PointChanges::noteAnew(const rdf::ReadTransaction& transaction) {
   if (anew.empty()) return;
   for (const perception::TileKey& tile : anew) added[tile].clear();  // no scan may have points there
   for (const Cloud& cloud : storedClouds(transaction))
-    if (const auto lowest = lowestBelow(cloud, anew)) scans_anew.emplace(cloud.id, *lowest);
+    if (const TileSet reached = tilesInBounds(cloud, anew); !reached.empty()) {
+      perception::TileKey lowest = *reached.begin();
+      for (const perception::TileKey& tile : reached) lowest.y = std::min(lowest.y, tile.y);
+      scans_anew.emplace(cloud.id, lowest);
+    }
 }
 
 void PointChanges::add(ScanSegments segments, std::uint64_t part_points) {

@@ -92,6 +92,8 @@ scan::Scan storedScan(const rdf::ReadTransaction& transaction, const scan::ScanI
 TileSet storedTiles(const rdf::ReadTransaction& transaction);
 void storeTiles(rdf::WriteTransaction& transaction, const TileSet& tiles);
 
+/// Those of `tiles` that lie within the bounds of the cloud, a box: all in which it can have points.
+TileSet tilesInBounds(const Cloud& cloud, const TileSet& tiles);
 std::vector<scan::ScanId> idsOf(const std::vector<Cloud>& clouds);
 /// The clouds of the map, ascending by id.
 std::vector<Cloud> storedClouds(const rdf::ReadTransaction& transaction);

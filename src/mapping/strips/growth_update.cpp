@@ -53,8 +53,8 @@ class GrowthUpdate {
 
   bool isLarge() const { return cluxels_ > params_.whole_cluxels; }
 
-  /// What changed lies all over the map: each strip has unchanged tiles on all sides, and the whole map is decided
-  /// sooner. Where nearly all tiles changed, strips take as long, and need no list of all objects.
+  /// Whether the change lies all over the map. Each strip then has unchanged tiles on all sides, so that deciding the
+  /// whole map is faster. Where nearly all tiles changed, strips are as fast, and need no list of all objects.
   bool isScattered() const {
     constexpr double kNearlyAll = 0.9;
     const auto shareOf = [this](const TileSet& tiles) {

@@ -28,7 +28,8 @@ bool hasOtherQuads(const rdf::WriteTransaction& transaction) {
   return !change || !change->added.empty() || !change->removed.empty();
 }
 
-/// Whether a window would take too much memory, while strips of the whole map take little, and not many times as long.
+/// Whether the change is too large for the memory of one window, and large enough a share of the map that deciding the
+/// whole map strip by strip takes at most some three times as long.
 bool isLarge(const LayerWork& work, const OutputChanges& changes) {
   constexpr double kLargeShare = 0.3;  // of the tiles, with those beside them
   if (!work.params.is_first_of_commit || !canBeInStrips(work)) return false;
