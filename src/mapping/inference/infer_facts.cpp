@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "base/free_memory.hpp"
 #include "mapping/inference/inference_graphs.hpp"
 #include "mapping/inference/sparql_rules.hpp"
 #include "rdf/io/rdf_io.hpp"
@@ -31,6 +32,7 @@ void noteUnusedAxioms(const std::vector<NamedText>& ontology, ProgressSink& sink
 void inferAnew(rdf::WriteTransaction& transaction, const std::vector<NamedText>& rules, ProgressSink& sink,
                const rdf::InferenceCheck& check) {
   noteIgnoredAxioms(inferClosure(transaction, check).ignored, sink);
+  returnFreeMemory();
   InferenceRecord record = runSparqlRules(transaction, rules, check);
   const rdf::QuadReader reader{static_cast<const rdf::ReadTransaction&>(transaction)};
   if (!InferenceGraphs(reader).are_all && record.reason.empty()) {

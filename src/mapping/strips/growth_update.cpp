@@ -31,7 +31,7 @@ using perception::TileSet;
 
 class GrowthUpdate {
  public:
-  GrowthUpdate(const LayerWork& work, const OutputChanges& changes, const SemanticState& former)
+  GrowthUpdate(const LayerWork& work, OutputChanges& changes, const SemanticState& former)
       : work_(work),
         transaction_(work.transaction),
         before_(work.transaction.before()),
@@ -57,33 +57,40 @@ class GrowthUpdate {
   /// whole map is faster. Where nearly all tiles changed, strips are as fast, and need no list of all objects.
   bool isScattered() const {
     constexpr double kNearlyAll = 0.9;
-    const auto shareOf = [this](const TileSet& tiles) {
-      return static_cast<double>(tiles.size()) / static_cast<double>(all_.size());
+    const auto shareOf = [this](std::size_t tiles) {
+      return static_cast<double>(tiles) / static_cast<double>(all_.size());
     };
-    const double around = shareOf(perception::withRing(other_, all_));
-    return shareOf(other_) < kNearlyAll && around > work_.params.max_window_share;
+    const std::size_t around = perception::withRing(other_, all_).size();
+    return shareOf(new_.size() + other_.size()) < kNearlyAll && shareOf(around) > work_.params.max_window_share;
   }
 
   std::optional<SemanticUpdate> run() {
     const std::vector<ContentHash> wide = wideObjects();
+    dropCommittedSummaries();
     SemanticUpdate update;
     bool is_first = true;
     const TileSet changed = perception::unionOf(TileSet(new_), other_);
     for (const TileSet& tiles : layerStripsOf(transaction_, changed, cluxels_, params_.whole_cluxels)) {
       if (work_.check) work_.check(0);
       auto decided = decide(tiles);
-      if (!decided && is_first) return std::nullopt;
+      if (!decided && is_first) {
+        readCommittedSummaries();
+        return std::nullopt;
+      }
       if (!decided) return decideWholeMap();
       is_first = false;
       update.tiles_decided += decided->tiles_decided;
       update.objects = decided->objects, update.cluxels = decided->cluxels, update.primitives = decided->primitives;
       difference_.add(std::move(static_cast<DifferentObjects&>(*decided)));
       strip_.told_clouds = seenClouds(storedClouds(transaction_));
+      transaction_.writePages();
       returnFreeMemory();
     }
     if (!std::all_of(wide.begin(), wide.end(), [&](const ContentHash& id) { return isThere(id); }))
       return decideWholeMap();
     tellRays();
+    transaction_.writePages();
+    returnFreeMemory();
     inferFacts(transaction_, work_.parsed.inputs, work_.sink, work_.check);
     const rdf::ReadTransaction& reading = transaction_;
     update.statements = toldOutcomes(rdf::QuadReader(reading));
@@ -117,13 +124,30 @@ class GrowthUpdate {
     changes.tiles.insert(tile);
     if (was_absent)
       changes.former_summaries.emplace(tile, std::nullopt);
+    else if (committed_.contains(tile))
+      changes.former_summaries.emplace(tile, committedSummary(tile));
     else if (const auto former = changes_.former_summaries.find(tile); former != changes_.former_summaries.end())
       changes.former_summaries.insert(*former);
   }
 
   void noteHidden(const TileKey& tile, OutputChanges& changes) const {
     changes.tiles.insert(tile);
-    changes.former_summaries.emplace(tile, std::string(requiredBlock(before_, tables::kSummaries, tile)));
+    changes.former_summaries.emplace(tile, committedSummary(tile));
+  }
+
+  /// Former summaries are large. Those that the commit before holds are read from there when their strip comes.
+  void dropCommittedSummaries() {
+    for (auto& [tile, summary] : changes_.former_summaries)
+      if (summary && before_.block(tables::kSummaries, tables::keyOf(tile)) == *summary) {
+        committed_.insert(tile);
+        std::string().swap(*summary);
+      }
+  }
+  void readCommittedSummaries() {
+    for (const TileKey& tile : committed_) changes_.former_summaries[tile] = committedSummary(tile);
+  }
+  std::string committedSummary(const TileKey& tile) const {
+    return std::string(requiredBlock(before_, tables::kSummaries, tile));
   }
 
   /// Tells what rays say about objects that strips have made, and about others that rays of the new scans pass.
@@ -140,10 +164,11 @@ class GrowthUpdate {
   /// Decides the whole map, when a strip cannot be decided alone.
   SemanticUpdate decideWholeMap() {
     work_.stages.readAsBefore(nullptr, {});
+    readCommittedSummaries();
     OutputChanges rest;
     for (const TileKey& tile : new_) noteChange(tile, true, rest);
     for (const TileKey& tile : other_) noteChange(tile, hidden_.contains(tile), rest);
-    SemanticUpdate update = updateAll(work_, rest);
+    SemanticUpdate update = updateAll(work_, std::move(rest));
     difference_.add(std::move(static_cast<DifferentObjects&>(update)));
     return withLists(std::move(update));
   }
@@ -168,11 +193,12 @@ class GrowthUpdate {
   const LayerWork& work_;
   rdf::WriteTransaction& transaction_;
   rdf::ReadTransaction before_;
-  const OutputChanges& changes_;
+  OutputChanges& changes_;
   const SemanticState& former_;
   TileSet all_;                ///< of the map
   TileSet new_;                ///< that are not shown yet
   TileSet other_;              ///< that were there and have other outputs now: so far they count as they were
+  TileSet committed_;          ///< whose former summaries are those of the commit before, and not in changes_
   TileSet settled_;            ///< that are shown as they are now
   TileSet hidden_;             ///< of the other ones: those beside settled ones
   std::uint64_t cluxels_ = 0;  ///< of new and other tiles
@@ -197,7 +223,7 @@ bool isOnlyAdded(const rdf::ReadTransaction& transaction, const OutputChanges& c
 
 }  // namespace
 
-std::optional<SemanticUpdate> updateByGrowth(const LayerWork& work, const OutputChanges& changes) {
+std::optional<SemanticUpdate> updateByGrowth(const LayerWork& work, OutputChanges& changes) {
   if (changes.has_copied_map || !work.params.is_first_of_commit || !canBeInStrips(work)) return std::nullopt;
   const std::optional<SemanticState> former = storedSemanticState(work.transaction);
   if (!former || former->cluxels == 0) return std::nullopt;

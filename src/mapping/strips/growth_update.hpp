@@ -8,6 +8,6 @@ namespace cluxel::mapping {
 
 /// After scans came, and nothing else changed. Absent, with nothing written, when the tiles that are new or have other
 /// outputs have fewer cluxels than UpdateParams::whole_cluxels, or cannot be decided strip by strip.
-std::optional<SemanticUpdate> updateByGrowth(const LayerWork& work, const OutputChanges& changes);
+std::optional<SemanticUpdate> updateByGrowth(const LayerWork& work, OutputChanges& changes);
 
 }  // namespace cluxel::mapping

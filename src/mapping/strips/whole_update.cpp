@@ -81,6 +81,7 @@ class StripUpdate {
       update.objects = decided->objects, update.cluxels = decided->cluxels, update.primitives = decided->primitives;
       for (const TileKey& tile : tiles) notePrimitives(tile);
       strip.retired = {}, strip.told_clouds = seenClouds(storedClouds(transaction_));
+      transaction_.writePages();
       returnFreeMemory();
     }
     const auto is_there = [&](const ContentHash& id) {
@@ -91,6 +92,8 @@ class StripUpdate {
     if (work_.check) work_.check(0);
     tellPresence(transaction_, made.take(), storedClouds(transaction_), made.removed(), params_.threads);
     eraseRowsWithoutObject(transaction_);
+    transaction_.writePages();
+    returnFreeMemory();
     inferFacts(transaction_, work_.parsed.inputs, work_.sink, work_.check);
     storeSplits(transaction_, splits);
     update.statements = toldOutcomes(rdf::QuadReader(reading()));
@@ -214,13 +217,14 @@ bool canBeInStrips(const LayerWork& work) {
   return reach_m && *reach_m <= perception::kTileSize_m && !makesWideObjectsButGround(work.parsed.rules);
 }
 
-SemanticUpdate updateAll(const LayerWork& work, const OutputChanges& changes) {
+SemanticUpdate updateAll(const LayerWork& work, OutputChanges changes) {
   std::vector<ObjectMembers> before;
   if (work.params.lists_objects) {
     const SemanticState former = storedSemanticState(work.transaction).value_or(SemanticState{});
     before = formerObjects(work.transaction, changes,
                            motionsBetween(work.transaction.before(), former.clouds, storedClouds(work.transaction)));
   }
+  changes.former_summaries.clear();  // they are large
   std::optional<SemanticUpdate> update = updateInStrips(work);
   if (!update) update = updateAtOnce(work);
   DifferentObjects& different = *update;

@@ -8,7 +8,7 @@ namespace cluxel::mapping {
 
 /// Computes all layers and facts. A map that is larger than UpdateParams::whole_cluxels is decided strip by strip, with
 /// the same result, when all rules have a reach. Memory: decision 0121.
-SemanticUpdate updateAll(const LayerWork& work, const OutputChanges& changes);
+SemanticUpdate updateAll(const LayerWork& work, OutputChanges changes);
 
 /// Whether the rules allow for strips: all have a reach, and only the ground may be a class-wide object.
 bool canBeInStrips(const LayerWork& work);

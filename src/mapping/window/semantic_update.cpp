@@ -58,7 +58,7 @@ SemanticUpdate updateSemanticLayer(rdf::WriteTransaction& transaction, const Par
     if (auto update = updateInference(work, changes)) return *std::move(update);
   if (inputs == ChangedInputs::Scans) {
     if (auto update = updateByGrowth(work, changes)) return *std::move(update);
-    if (changes.lender == nullptr && isLarge(work, changes)) return updateAll(work, changes);
+    if (changes.lender == nullptr && isLarge(work, changes)) return updateAll(work, std::move(changes));
   }
   std::optional<LentDecisions> lent;
   if (inputs == ChangedInputs::Scans && changes.lender != nullptr) {
@@ -77,7 +77,7 @@ SemanticUpdate updateSemanticLayer(rdf::WriteTransaction& transaction, const Par
       return *std::move(update);
     }
   if (lent) lent->takeBack();
-  return updateAll(work, changes);
+  return updateAll(work, std::move(changes));
 }
 
 }  // namespace cluxel::mapping

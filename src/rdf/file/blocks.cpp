@@ -125,6 +125,7 @@ void WriteTransaction::putBlock(std::string_view table, std::string_view key, st
   if (!bytes.empty()) std::memcpy(static_cast<char*>(stored.mv_data) + sizeof head, bytes.data(), bytes.size());
   ++impl_->generation;
   impl_->directories->noteBlock(bytes.size());
+  impl_->noteWritten(bytes.size());
 }
 
 bool WriteTransaction::putIfDifferent(std::string_view table, std::string_view key, std::string_view bytes) {

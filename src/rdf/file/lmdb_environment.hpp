@@ -168,6 +168,7 @@ struct ReadTransaction::Impl {
   BlockKeys block_keys;
   StoreSums sums;                           ///< of a write transaction
   QuadJournal journal;                      ///< of a write transaction
+  std::uint64_t unwritten_bytes = 0;        ///< of a write transaction, since writePages()
   std::shared_ptr<StoreSnapshot> snapshot;  ///< created on first use, for this generation
   std::uint64_t snapshot_generation = 0;
   std::function<void()> flush_poll;  ///< of a FlushPoll
@@ -192,6 +193,10 @@ struct ReadTransaction::Impl {
   CursorHandle cursorOn(Table which, std::string_view doing) const;
   MDB_txn* live() const;  ///< throws when the transaction has ended, or was begun before this process was forked
   void end();
+  /// Writes the pages that LMDB keeps in memory for a write transaction to the file.
+  void writePages();
+  /// Does so from 64 MiB on.
+  void noteWritten(std::uint64_t bytes);
   /// The commit that is read, or on which the write transaction builds.
   std::size_t commitBefore() const { return mdb_txn_id(live()) - (writing ? 1 : 0); }
 };

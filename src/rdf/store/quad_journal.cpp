@@ -3,6 +3,7 @@
 #include "rdf/store/quad_journal.hpp"
 
 #include <algorithm>
+#include <vector>
 
 #include "rdf/file/lmdb_environment.hpp"
 #include "rdf/store/quad_reader_impl.hpp"
@@ -12,7 +13,7 @@ namespace cluxel::rdf {
 std::optional<QuadDifference> changesOf(const WriteTransaction& transaction) {
   const QuadJournal& journal = transaction.impl().journal;
   if (!journal.isComplete()) return std::nullopt;
-  std::vector<QuadJournal::Entry> entries = journal.entries();
+  std::vector<QuadJournal::Entry> entries(journal.entries().begin(), journal.entries().end());
   std::stable_sort(entries.begin(), entries.end(), [](const auto& a, const auto& b) { return a.quad < b.quad; });
   QuadDifference difference;
   for (std::size_t first = 0; first < entries.size();) {

@@ -3,8 +3,8 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <optional>
-#include <vector>
 
 #include "rdf/file/check/store_sums.hpp"
 #include "rdf/file/environment.hpp"
@@ -35,11 +35,11 @@ class QuadJournal {
     entries_ = {};
     is_complete_ = false;
   }
-  const std::vector<Entry>& entries() const { return entries_; }
+  const std::deque<Entry>& entries() const { return entries_; }
 
  private:
   static constexpr std::uint64_t kLeastLimit = 100'000;
-  std::vector<Entry> entries_;
+  std::deque<Entry> entries_;  ///< a vector takes up to three times as much while it grows
   std::uint64_t limit_ = 0;
   bool is_complete_ = false;
 };

@@ -26,7 +26,7 @@ namespace {
 
 // Queries use ids from here on for computed terms.
 constexpr TermId kMaxTerms = 0x8000'0000U;
-constexpr std::size_t kMaxPendingQuads = 4'000'000;
+constexpr std::size_t kMaxPendingQuads = 2'000'000;
 constexpr std::size_t kMaxPendingTermBytes = std::size_t{512} << 20U;
 
 }  // namespace

@@ -233,6 +233,29 @@ MDB_txn* ReadTransaction::Impl::live() const {
   return txn;
 }
 
+/// LMDB writes pages when it has 131,071 of them, but a long value counts as one page, whatever its length. So it is
+/// asked to store a value that leaves room for no page, under the key of a table, which it then refuses.
+void ReadTransaction::Impl::writePages() {
+  constexpr std::size_t kMostPages = 131'072;
+  unwritten_bytes = 0;
+  MDB_stat stat;
+  check(mdb_stat(live(), environment->mainTable(), &stat), "write the map");
+  MDB_val key = toVal(kTableNames[static_cast<std::size_t>(Table::Blocks)]);
+  MDB_val refused{kMostPages / 2 * stat.ms_psize, nullptr};  // LMDB counts a value twice
+  const int code = mdb_put(live(), environment->mainTable(), &key, &refused, 0);
+  if (code != MDB_INCOMPATIBLE) check(code, "write the map");
+}
+
+void ReadTransaction::Impl::noteWritten(std::uint64_t bytes) {
+  constexpr std::uint64_t kMostUnwritten = 64 << 20;
+  unwritten_bytes += bytes;
+  if (unwritten_bytes >= kMostUnwritten) writePages();
+}
+
+void WriteTransaction::writePages() {
+  impl().writePages();
+}
+
 void ReadTransaction::Impl::requireSound() const {
   if (has_failed)
     throw Error(ErrorKind::StoreUnavailable, environment->file().string() +

@@ -137,6 +137,7 @@ void writeDraft(ReadTransaction::Impl& transaction, Table index) {
   for (std::size_t i = 0; i < draft->pageCount(); ++i) {
     poll.count(draft->page(i).size());
     appendKeys(transaction, cursor.get(), draft->page(i));
+    transaction.noteWritten(draft->page(i).size_bytes());
     if (transaction.environment->hasRanges()) sums.add(draft->page(i));
   }
   transaction.directories->noteRewritten(index, draft->pageCount());
