@@ -99,6 +99,9 @@ struct MapSummary {
 /// InvalidArgument: an empty path, or options that are wrong or contradict each other; BudgetExceeded: a limit of
 /// QueryOptions or UpdateOptions. What a callback throws passes unchanged.
 ///
+/// When another file takes the place of this one (`mv NEW MAP`), the next call reads that one. When the file is moved
+/// away, the next call throws StoreUnavailable.
+///
 /// A map that was moved from may only be destroyed or assigned to.
 class CLUXEL_API Map {
  public:
