@@ -140,7 +140,7 @@ HttpResponse MapService::answerRoute(const Route& route, const HttpRequest& requ
   if (is_trial && request.method != "POST")
     throw Refusal(405, request.method + " is not allowed here; send rules by POST", {{"Allow", "POST"}});
   requireMethod(request, may_post || is_trial);
-  const WorkSlots::Slot slot = slots_.take();
+  const WorkSlots::Slot slot = slots_.take(request.has_hung_up);
   return route.map == nullptr ? answerOwn(route) : answerMap(route, request, target);
 }
 

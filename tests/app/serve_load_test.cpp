@@ -46,6 +46,31 @@ TEST_F(ServeCommand, AFullQueueIsToldWithRetryAfter) {
   EXPECT_EQ(served.query("ASK {}").status, 200);
 }
 
+std::string requestOf(const std::string& query) {
+  return "POST /sparql HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/sparql-query\r\nContent-Length: " +
+         std::to_string(query.size()) + "\r\n\r\n" + query;
+}
+
+TEST_F(ServeCommand, AClientThatHangsUpFreesItsSlot) {
+  const fs::path log = path("left.log");
+  const Served served = serve("--deadline 60 --running 1 --queue 1 --log " + log.string());
+  {
+    const Connection running(served.port());
+    running.send(requestOf(kEndless));
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    const Connection waiting(served.port());
+    waiting.send(requestOf(kEndless));
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    EXPECT_EQ(served.query("ASK {}").status, 503) << "one runs, one waits";
+  }
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  Reply reply;
+  EXPECT_LT(secondsOf([&] { reply = served.query("ASK {}"); }), 5);
+  EXPECT_EQ(reply.status, 200) << reply.body;
+  const std::string text = readFile(log);
+  EXPECT_NE(text.find("\" 499 "), std::string::npos) << text;
+}
+
 TEST_F(ServeCommand, AClientThatAsksTooOftenWaits) {
   const Served served = serve("--rate 5");
   std::multiset<int> statuses;

@@ -83,6 +83,19 @@ TEST(WorkSlots, AFullQueueAndALongWaitAreRefused) {
   EXPECT_EQ(statusOfTaking(impatient), 200) << "a wait that ended takes nothing with it";
 }
 
+TEST(WorkSlots, WhoGivesUpWaitingLeavesTheQueue) {
+  WorkSlots slots(1, 1, milliseconds(60'000));
+  const WorkSlots::Slot held = slots.take();
+  for (int i = 0; i < 2; ++i) {
+    try {
+      slots.take([] { return true; });
+      FAIL() << "the slot is taken";
+    } catch (const Refusal& refusal) {
+      EXPECT_EQ(refusal.status(), 499);
+    }
+  }
+}
+
 TEST(WorkSlots, RequestsRunInTheOrderInWhichTheyCame) {
   WorkSlots slots(1, 10, milliseconds(10'000));
   std::vector<int> order;

@@ -2,6 +2,7 @@
 // One HTTP request and its response as values, so that handlers are tested without sockets.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -17,6 +18,10 @@ struct HttpRequest {
   HeaderList headers = {};   ///< names in lower case
   std::string body = {};
   std::string client = {};  ///< the address of the other end
+  /// Whether the client has hung up meanwhile, so that nobody waits for the response. Absent: nobody can tell.
+  std::function<bool()> has_hung_up = {};
+
+  bool isAbandoned() const { return has_hung_up && has_hung_up(); }
 
   /// The values of a header, joined by commas; empty when it is absent. `name` is in lower case.
   std::string header(std::string_view name) const {

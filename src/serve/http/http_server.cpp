@@ -36,6 +36,7 @@ std::string pathOf(const std::string& target) {
 
 HttpRequest requestOf(const httplib::Request& parsed, std::string body) {
   HttpRequest request{parsed.method, pathOf(parsed.target), {}, std::move(body), parsed.remote_addr};
+  request.has_hung_up = [stream = current_stream] { return stream->hasHungUp(); };
   for (const auto& [name, value] : parsed.headers) request.headers.emplace_back(lowerCase(name), value);
   return request;
 }

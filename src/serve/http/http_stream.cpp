@@ -135,6 +135,11 @@ ssize_t HttpStream::write(const char* bytes, std::size_t size) {
   return static_cast<ssize_t>(written);
 }
 
+bool HttpStream::hasHungUp() const {
+  pollfd entry{socket_, POLLRDHUP, 0};
+  return ::poll(&entry, 1, 0) > 0;
+}
+
 /// Closing a socket with unread bytes resets the connection, and the client may then lose the response. What is still
 /// sent is read for a moment.
 void HttpStream::close() {

@@ -30,6 +30,8 @@ class HttpStream : public httplib::Stream {
   Fault fault() const { return fault_; }
   /// cpp-httplib has read no request line then, and sends no response.
   bool hasOverlongRequestLine() const { return fault_ == Fault::HeaderTooLarge && is_request_line_; }
+  /// The other end has closed the connection, or its sending half, which is taken for the same. Never blocks.
+  bool hasHungUp() const;
   double secondsSinceBegin() const { return std::chrono::duration<double>(Clock::now() - begun_).count(); }
   /// Closes the connection such that the client can still read the response.
   void close();

@@ -12,6 +12,10 @@ Refusal busy(const std::string& message) {
   return {503, message, {{"Retry-After", "1"}}};
 }
 
+Refusal abandoned() {
+  return {499, "the client hung up before the answer was ready"};
+}
+
 HttpResponse textResponse(int status, std::string text) {
   if (text.empty() || text.back() != '\n') text += '\n';
   return {status, "text/plain; charset=utf-8", std::move(text), {}};

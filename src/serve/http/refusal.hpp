@@ -25,6 +25,8 @@ class Refusal : public std::runtime_error {
 
 /// The server is busy: status 503 with Retry-After.
 Refusal busy(const std::string& message);
+/// The client has hung up: status 499, which stands in the log only.
+Refusal abandoned();
 
 /// A plain text of one or more lines.
 HttpResponse textResponse(int status, std::string text);

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <cstddef>
+#include <functional>
 #include <list>
 #include <memory>
 #include <mutex>
@@ -32,8 +33,9 @@ class WorkSlots {
     WorkSlots* owner_;
   };
 
-  /// Waits for a slot. Throws Refusal (503) when the queue is full or the wait is too long.
-  Slot take();
+  /// Waits for a slot. Throws Refusal (503) when the queue is full or the wait is too long, and (499) when
+  /// `is_abandoned` says meanwhile that nobody waits for the work any more.
+  Slot take(const std::function<bool()>& is_abandoned = {});
 
  private:
   struct Waiter {
@@ -41,6 +43,7 @@ class WorkSlots {
     bool is_granted = false;
   };
   void release();
+  void passOn();  ///< under the lock
 
   std::mutex mutex_;
   std::size_t free_;

@@ -79,6 +79,14 @@ sparql::QueryOptions queryOptions(const RequestLimits& limits) {
   return options;
 }
 
+sparql::QueryOptions queryOptions(const RequestLimits& limits, const HttpRequest& request) {
+  sparql::QueryOptions options = queryOptions(limits);
+  options.budget.poll = [&request] {
+    if (request.isAbandoned()) throw abandoned();
+  };
+  return options;
+}
+
 HttpResponse answerQuery(const rdf::QuadReader& reader, const std::string& text, const sparql::QueryOptions& options,
                          const std::vector<sparql::Binding>& bindings, const FormatRequest& requested,
                          const RequestLimits& limits) {

@@ -42,8 +42,10 @@ class LimitedBody {
   std::string text_;
 };
 
-/// The options of a query within the limits of a request.
+/// The options of a query or update within the limits of a request.
 sparql::QueryOptions queryOptions(const RequestLimits& limits);
+/// Those of a query, which ends by Refusal (499) when the client of `request` hangs up.
+sparql::QueryOptions queryOptions(const RequestLimits& limits, const HttpRequest& request);
 
 /// Runs a query with its parameters bound.
 HttpResponse answerQuery(const rdf::QuadReader& reader, const std::string& text, const sparql::QueryOptions& options,

@@ -87,8 +87,9 @@ HttpResponse answerQuestion(const ServedMap& map, const ResourceRequest& asked,
   std::vector<std::string> given;
   for (const auto& [parameter, value] : asked.target.parameters)
     if (parameter != "format") given.push_back(parameter + "=" + value);
-  return answerQuery(map.quads(), question.text, queryOptions(asked.limits), bindingsFor(question, given),
-                     formatRequestOf(asked.request, asked.target.parameters), asked.limits);
+  return answerQuery(map.quads(), question.text, queryOptions(asked.limits, asked.request),
+                     bindingsFor(question, given), formatRequestOf(asked.request, asked.target.parameters),
+                     asked.limits);
 }
 
 HttpResponse answerGraph(const ServedMap& map, const ResourceRequest& asked) {
@@ -98,7 +99,7 @@ HttpResponse answerGraph(const ServedMap& map, const ResourceRequest& asked) {
   if (graph.has_value() == valueOf(parameters, "default").has_value())
     throw Refusal(400, "name one graph: graph=IRI, or default for the union of all graphs but history");
   const rdf::QuadReader snapshot = map.quads();
-  sparql::QueryOptions options = queryOptions(asked.limits);
+  sparql::QueryOptions options = queryOptions(asked.limits, asked.request);
   if (graph) {
     if (!snapshot.idOf(Term::iri(*graph))) throw Refusal(404, "the map has no graph <" + *graph + ">");
     options.default_graphs = {*graph};

@@ -68,7 +68,7 @@ Operation operationOf(const HttpRequest& request, const Target& target) {
 
 HttpResponse runQuery(const ServedMap& map, const HttpRequest& request, const Operation& operation,
                       const RequestLimits& limits) {
-  sparql::QueryOptions options = queryOptions(limits);
+  sparql::QueryOptions options = queryOptions(limits, request);
   options.default_graphs = valuesOf(operation.parameters, "default-graph-uri");
   options.named_graphs = valuesOf(operation.parameters, "named-graph-uri");
   return answerQuery(map.quads(), *operation.query, options, {}, formatRequestOf(request, operation.parameters),

@@ -64,7 +64,8 @@ HttpResponse answerTask(ServedMap& map, const ResourceRequest& asked, const std:
   const tasks::TaskValues values(task.parameters, given);
   LimitedBody body(asked.limits.max_answer_bytes);
   map.withReader([&](const mapping::MapReader& reader) {
-    const tasks::TaskAnswer answer = answerOf(task, {reader, options.with_reasons, queryOptions(asked.limits)}, values);
+    const tasks::TaskAnswer answer =
+        answerOf(task, {reader, options.with_reasons, queryOptions(asked.limits, asked.request)}, values);
     body.add(answerText(reader, answer, options.format, options.frame));
   });
   return {200, mediaTypeOf(options.format), body.take(), {}};
