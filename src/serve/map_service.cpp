@@ -8,6 +8,7 @@
 #include "base/ascii.hpp"
 #include "base/nearest_name.hpp"
 #include "serve/http/refusal.hpp"
+#include "serve/resources/answer_body.hpp"
 #include "serve/resources/map_resources.hpp"
 #include "serve/resources/sparql_endpoint.hpp"
 #include "serve/resources/start_page.hpp"
@@ -114,7 +115,10 @@ void MapService::allowOrigin(const HttpRequest& request, HttpResponse& response)
   const std::string origin = request.header("origin");
   const bool is_open = std::find(allowed.begin(), allowed.end(), "*") != allowed.end();
   const bool is_known = std::find(allowed.begin(), allowed.end(), origin) != allowed.end();
-  if (is_open || is_known) response.headers.emplace_back("Access-Control-Allow-Origin", is_open ? "*" : origin);
+  if (is_open || is_known) {
+    response.headers.emplace_back("Access-Control-Allow-Origin", is_open ? "*" : origin);
+    response.headers.emplace_back("Access-Control-Expose-Headers", kWarningHeader);
+  }
   response.headers.emplace_back("Vary", "Origin");
 }
 

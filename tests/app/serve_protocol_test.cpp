@@ -168,6 +168,43 @@ TEST_F(ServeCommand, ATargetMayNameTheServer) {
   EXPECT_EQ(get("http://localhost?x=/maps").body, get("/?x=/maps").body);
 }
 
+TEST_F(ServeCommand, WarningsOfAQueryStandInHeadersAndBelowATable) {
+  const std::string clx = "PREFIX clx: <https://w3id.org/cluxel/ontology#> ";
+  for (const char* format : {"text/csv", "application/sparql-results+json", "text/plain"}) {
+    const Reply reply = shared().query(clx + "ASK { ?s a clx:Tre }", std::string("Accept: ") + format + "\r\n");
+    EXPECT_EQ(reply.status, 200);
+    EXPECT_NE(reply.header("Cluxel-Warning")
+                  .find("the map has no class <https://w3id.org/cluxel/ontology#Tre>; hint: "
+                        "did you mean 'Tree'?"),
+              std::string::npos)
+        << reply.head;
+    EXPECT_EQ(reply.body.find("did you mean") != std::string::npos, std::string(format) == "text/plain") << reply.body;
+  }
+  const auto warning = [](const std::string& query) { return shared().query(query).header("Cluxel-Warning"); };
+  EXPECT_EQ(warning(clx + "ASK { ?s a clx:Tree }"), "");
+  EXPECT_NE(warning("SELECT * FROM <urn:none> { ?s ?p ?o }").find("no graph <urn:none>"), std::string::npos);
+  EXPECT_NE(warning("ASK { ?s <urn:stra\u00dfe%> ?o }").find("<urn:stra%C3%9Fe%25>"), std::string::npos);
+  EXPECT_NE(shared().get("/sparql?query=ASK%7B?s%20?p%20?o%7D&default-graph-uri=urn:none").header("Cluxel-Warning"),
+            "");
+  std::string many = "ASK { ";
+  for (int i = 0; i < 300; ++i) many += "?s <urn:p" + std::to_string(i) + "> ?o . ";
+  const Reply reply = shared().query(many + "}");
+  EXPECT_EQ(reply.status, 200);
+  EXPECT_LT(reply.head.size(), 8192U);
+  EXPECT_TRUE(reply.has("Cluxel-Warning: 192 further warnings")) << reply.head;
+  const std::string near = readFile(test::sourceFolder() / "queries/near_point.rq");
+  EXPECT_NE(warning(near).find("?x has no value here"), std::string::npos) << "its parameters have no values";
+  EXPECT_EQ(shared().get("/questions/near_point").header("Cluxel-Warning"), "");
+}
+
+TEST_F(ServeCommand, TheMapsPrefixesNeedNoDeclaration) {
+  const std::string csv = "Accept: text/csv\r\n", bare = "SELECT ?o WHERE { ?o a clx:Tree } ORDER BY ?o";
+  const Reply reply = shared().query(bare, csv);
+  EXPECT_EQ(reply.status, 200) << reply.body;
+  EXPECT_EQ(reply.body, shared().query(kTrees, csv).body);
+  EXPECT_EQ(shared().query("PREFIX clx: <urn:> " + bare, csv).body, "o\r\n") << "a PREFIX line overrides them";
+}
+
 TEST_F(ServeCommand, LongQueriesPassByPost) {
   const std::string query = "ASK {}" + std::string(200'000, ' ');
   EXPECT_EQ(shared().query(query).status, 200);
@@ -223,6 +260,7 @@ TEST_F(ServeCommand, OtherOriginsReadAnswersOnlyWhenAllowed) {
   const std::string origin = "Origin: https://maps.example\r\n";
   EXPECT_FALSE(shared().get("/maps", origin).has("Access-Control-"));
   const Served open = serve("--cors https://maps.example");
+  EXPECT_EQ(open.get("/maps", origin).header("Access-Control-Expose-Headers"), "Cluxel-Warning");
   EXPECT_EQ(open.get("/maps", origin).header("Access-Control-Allow-Origin"), "https://maps.example");
   EXPECT_FALSE(open.get("/maps", "Origin: https://other.example\r\n").has("Access-Control-Allow-Origin"));
   const Reply asked = replyOf(open.exchange("OPTIONS /sparql HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n" +

@@ -173,6 +173,31 @@ TEST(Functions, WarnOfConstantPatternsThatAreNoRegularExpressions) {
     EXPECT_TRUE(warnings(right).empty()) << right;
 }
 
+TEST(Functions, WarnOfVariablesThatNoPatternBinds) {
+  const SmallStore store;
+  const auto warnings = [&store](const std::string& text) { return checkQuery(store.reader(), text); };
+  for (const char* faulty :
+       {"SELECT * { ?s ?p ?o FILTER(?o < ?radius * ?radius) }", "SELECT * { ?s ?p ?o BIND(?radius AS ?r) }",
+        "SELECT * { ?s ?p ?o } ORDER BY ?radius", "SELECT * { ?radius ?p ?o { ?s ?q ?t FILTER(?t < ?radius) } }",
+        "SELECT * { ?s ?p ?o FILTER NOT EXISTS { ?s ?p ?q FILTER(?q < ?radius) } }",
+        "SELECT (COALESCE(?radius + 1, 1) AS ?r) { ?s ?p ?o }"}) {
+    const auto found = warnings(faulty);
+    ASSERT_EQ(found.size(), 1U) << faulty;
+    EXPECT_THAT(found[0].message, testing::HasSubstr("?radius has no value here: no pattern binds it")) << faulty;
+    EXPECT_GT(found[0].location.column, 0U);
+  }
+  for (const char* right :
+       {"SELECT * { ?s ?p ?o FILTER(!BOUND(?radius)) }", "SELECT (COALESCE(?radius, 1) AS ?r) { ?s ?p ?o }",
+        "SELECT * { ?s ?p ?o OPTIONAL { ?s ?q ?t } FILTER(?t < ?o) }",
+        "SELECT * { ?s ?p ?o FILTER NOT EXISTS { ?s ?q ?t FILTER(?t < ?o) } }",
+        "SELECT * { VALUES ?t { 1 } ?s ?p ?o FILTER(?t < ?o) }",
+        "SELECT (SUM(?o) AS ?sum) { ?s ?p ?o } GROUP BY ?s HAVING(SUM(?o) > 1) ORDER BY ?sum"})
+    EXPECT_TRUE(warnings(right).empty()) << right;
+  EXPECT_TRUE(
+      PreparedQuery(store.reader(), "SELECT * { ?s ?p ?o FILTER(?o < ?radius) }", {}, {"radius"}).warnings().empty())
+      << "a parameter has a value";
+}
+
 TEST(Functions, NewObjectIsAFunctionOfClassAndMembersOnly) {
   const SmallStore store;
   EXPECT_EQ(store.value("clx:newObject(clx:Avenue, :a, :b) = clx:newObject(clx:Avenue, :b, :a, :b)"), kTrue);

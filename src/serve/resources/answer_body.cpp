@@ -27,6 +27,35 @@ HttpResponse responseWith(LimitedBody& body, const ResultOffer& offer) {
   return {200, contentTypeOf(offer), body.take(), {{"Vary", "Accept"}}};
 }
 
+/// Clients take a few KiB of headers.
+constexpr std::size_t kMostWarnings = 8, kMostWarningBytes = 600;
+
+/// One line of printable ASCII: what is none is percent-encoded, as the percent sign.
+std::string headerText(const Diagnostic& warning) {
+  constexpr std::string_view digits = "0123456789ABCDEF";
+  std::string text;
+  for (const char c :
+       toString(warning.location) + ": " + warning.message + (warning.hint.empty() ? "" : "; hint: " + warning.hint)) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte >= ' ' && byte < 0x7f && c != '%')
+      text += c;
+    else
+      text.append({'%', digits[byte >> 4U], digits[byte & 15U]});
+  }
+  return text.size() <= kMostWarningBytes ? text : text.substr(0, kMostWarningBytes) + "...";
+}
+
+/// In headers, which fit every format, and below a table, which people read.
+void addWarnings(const std::vector<Diagnostic>& warnings, const ResultOffer& offer, HttpResponse& response) {
+  for (std::size_t i = 0; i < std::min(warnings.size(), kMostWarnings); ++i) {
+    response.headers.emplace_back(kWarningHeader, headerText(warnings[i]));
+    if (offer.format == sparql::ResultFormat::Table) response.body += "\n" + format(warnings[i]) + "\n";
+  }
+  if (warnings.size() > kMostWarnings)
+    response.headers.emplace_back(kWarningHeader,
+                                  std::to_string(warnings.size() - kMostWarnings) + " further warnings");
+}
+
 }  // namespace
 
 const std::vector<ResultOffer>& offersFor(bool is_graph) {
@@ -76,6 +105,7 @@ sparql::QueryOptions queryOptions(const RequestLimits& limits) {
   if (limits.deadline.count() > 0) options.budget.deadline = limits.deadline;
   options.budget.max_rows = limits.max_rows;
   options.budget.max_memory_bytes = limits.max_memory_bytes;
+  options.prefixes = sparql::mapPrefixes();
   return options;
 }
 
@@ -99,8 +129,12 @@ HttpResponse answerQuery(const rdf::QuadReader& reader, const std::string& text,
   const ResultOffer& offer = chooseOffer(requested, is_graph);
   LimitedBody body(limits.max_answer_bytes);
   const auto writer = makeResultWriter(offer.format, [&body](std::string_view piece) { body.add(piece); });
+  std::vector<Diagnostic> warnings = prepared.warnings();
   prepared.run(*writer, bindings);
-  return responseWith(body, offer);
+  for (Diagnostic& note : prepared.notes()) warnings.push_back(std::move(note));
+  HttpResponse response = responseWith(body, offer);
+  addWarnings(warnings, offer, response);
+  return response;
 }
 
 HttpResponse answerResult(const sparql::QueryResult& result, const FormatRequest& requested,

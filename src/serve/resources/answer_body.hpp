@@ -47,7 +47,10 @@ sparql::QueryOptions queryOptions(const RequestLimits& limits);
 /// Those of a query, which ends by Refusal (499) when the client of `request` hangs up.
 sparql::QueryOptions queryOptions(const RequestLimits& limits, const HttpRequest& request);
 
-/// Runs a query with its parameters bound.
+/// The header of each warning about a query: text in ASCII, other bytes and % percent-encoded.
+inline constexpr const char* kWarningHeader = "Cluxel-Warning";
+
+/// Runs a query with its parameters bound. Warnings about it stand in headers, and below a table.
 HttpResponse answerQuery(const rdf::QuadReader& reader, const std::string& text, const sparql::QueryOptions& options,
                          const std::vector<sparql::Binding>& bindings, const FormatRequest& requested,
                          const RequestLimits& limits);

@@ -79,6 +79,7 @@ HttpResponse runQuery(const ServedMap& map, const HttpRequest& request, const Op
 void refuseUsing(const std::string& update) {
   sparql::SparqlParseOptions options;
   options.file = "update";
+  options.prefixes = sparql::mapPrefixes();
   const sparql::ast::Update parsed = sparql::parseUpdate(update, options);
   for (const sparql::ast::UpdateOperation& operation : parsed.operations) {
     const auto* modify = std::get_if<sparql::ast::Modify>(&operation.value);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "base/shown_line.hpp"
 #include "cluxel/error.hpp"
 #include "sparql/exec/guard.hpp"
 #include "sparql/syntax/mentions.hpp"
@@ -85,6 +86,7 @@ AlgebraQuery AlgebraBuilder::finish(NodePtr root, const Scope& scope) {
 }
 
 void AlgebraBuilder::warn(ast::SourceOffset at, std::string message, std::string hint) {
+  if (warnings_.size() >= kMaxFaults) return;
   const auto same = [&message](const ExpressionWarning& warning) { return warning.message == message; };
   if (std::none_of(warnings_.begin(), warnings_.end(), same))
     warnings_.push_back({at, std::move(message), std::move(hint)});

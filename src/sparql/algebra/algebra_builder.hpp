@@ -25,6 +25,8 @@ class AlgebraBuilder {
 
   NodePtr select(const ast::Select& select, Scope& scope, bool outermost);
   NodePtr group(const ast::GroupPattern& pattern, Scope& scope);
+  /// Unbound where it can have no value; expression() also warns of it.
+  Expr variable(const ast::Expression& written, Scope& scope, const SlotSet& visible);
   Expr expression(const ast::Expression& written, Scope& scope, const SlotSet& visible);
   Slot slotOf(ast::VariableIndex variable, Scope& scope);
   Scope outermostScope();

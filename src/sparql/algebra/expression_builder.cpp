@@ -65,10 +65,11 @@ Expr AlgebraBuilder::expression(const ast::Expression& written, Scope& scope, co
   if (options_.guard != nullptr) options_.guard->spend(sizeof(Expr));
   switch (written.kind) {
     case Written::Variable: {
-      const Slot slot = slotOf(written.variable, scope);
-      const bool seen = visible.has(slot) || scope.substituted.has(slot) || isParameter(slot);
-      Expr result = ofKind(seen ? Expr::Kind::Slot : Expr::Kind::Unbound, written.at);
-      if (seen) result.slot = slot;
+      Expr result = variable(written, scope, visible);
+      if (result.kind == Expr::Kind::Unbound)
+        warn(written.at, "?" + variables_[written.variable].name + " has no value here: no pattern binds it",
+             "bind it by a pattern, BIND or VALUES; the parameters of a shipped question have values when it is asked "
+             "by its name");
       return result;
     }
     case Written::Constant: {
@@ -94,15 +95,23 @@ Expr AlgebraBuilder::expression(const ast::Expression& written, Scope& scope, co
   return result;
 }
 
+Expr AlgebraBuilder::variable(const ast::Expression& written, Scope& scope, const SlotSet& visible) {
+  const Slot slot = slotOf(written.variable, scope);
+  const bool seen = visible.has(slot) || scope.substituted.has(slot) || isParameter(slot);
+  Expr result = ofKind(seen ? Expr::Kind::Slot : Expr::Kind::Unbound, written.at);
+  if (seen) result.slot = slot;
+  return result;
+}
+
 Expr AlgebraBuilder::call(const ast::Expression& written, Scope& scope, const SlotSet& visible) {
   Expr result = ofKind(Expr::Kind::Call, written.at);
   if (written.kind == Written::Function) {
     result.function = findFunction(written.term.text);
     if (result.function == nullptr) return unknownFunction(written, scope, visible);
   } else if (written.builtin == ast::Builtin::Bound) {
-    const Expr variable = expression(written.arguments[0], scope, visible);
-    result.kind = variable.kind == Expr::Kind::Slot ? Expr::Kind::Bound : Expr::Kind::Constant;
-    result.slot = variable.slot;
+    const Expr tested = variable(written.arguments[0], scope, visible);
+    result.kind = tested.kind == Expr::Kind::Slot ? Expr::Kind::Bound : Expr::Kind::Constant;
+    result.slot = tested.slot;
     if (result.kind == Expr::Kind::Constant) result.constant = Value::boolean(false);
     return result;
   } else if (written.builtin == ast::Builtin::Coalesce) {
@@ -114,7 +123,9 @@ Expr AlgebraBuilder::call(const ast::Expression& written, Scope& scope, const Sl
   }
   if (result.function != nullptr) checkCall(written, *result.function);
   for (const ast::Expression& argument : written.arguments) {
-    result.arguments.push_back(expression(argument, scope, visible));
+    const bool may_lack_value = result.kind == Expr::Kind::Coalesce && argument.kind == Written::Variable;
+    result.arguments.push_back(may_lack_value ? variable(argument, scope, visible)
+                                              : expression(argument, scope, visible));
   }
   return result;
 }

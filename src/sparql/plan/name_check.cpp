@@ -4,6 +4,7 @@
 #include <map>
 
 #include "base/nearest_name.hpp"
+#include "base/shown_line.hpp"
 #include "rdf/vocabulary.hpp"
 #include "sparql/exec/prepared_query.hpp"
 #include "sparql/syntax/source_text.hpp"
@@ -70,9 +71,10 @@ class NameCheck {
   explicit NameCheck(PreparedQuery::Impl& query) : query_(query) {}
 
   std::vector<Diagnostic> run() {
-    for (const auto* graphs : {&query_.query.dataset.default_graphs, &query_.query.dataset.named_graphs}) {
-      for (const Term& graph : *graphs) checkFrom(graph);
-    }
+    for (const auto* graphs : {&query_.query.dataset.default_graphs, &query_.query.dataset.named_graphs})
+      for (const Term& graph : *graphs) checkFrom(graph.text);
+    for (const auto* graphs : {&query_.options.default_graphs, &query_.options.named_graphs})
+      for (const std::string& graph : *graphs) checkFrom(graph);
     visit(*query_.algebra.root);
     for (const ExpressionWarning& warning : query_.algebra.warnings)
       found_.push_back(
@@ -87,9 +89,10 @@ class NameCheck {
     for (const Expr& condition : node.conditions) visit(condition);
     if (node.expression) visit(*node.expression);
   }
-  /// Checks FROM and FROM NAMED, which refer to graphs of the store only.
-  void checkFrom(const Term& graph) {
-    if (!query_.reader.idOf(graph)) warn("graph", query_.terms.intern(graph), query_.query.dataset.at, storedGraphs());
+  /// Checks FROM and FROM NAMED, and what a request gives in their place. They refer to graphs of the store only.
+  void checkFrom(const std::string& iri) {
+    const Term graph = Term::iri(iri);
+    if (!query_.reader.idOf(graph)) warn("graph", query_.terms.intern(graph), query_.query.dataset.at);
   }
   std::vector<std::string> storedGraphs() const {
     std::vector<std::string> names;
@@ -111,28 +114,38 @@ class NameCheck {
     if (triple.path) visit(*triple.path);
     if (!triple.path && !triple.predicate.isSlot()) warnPredicate(triple.predicate.constant, triple.predicate_at);
     if (triple.graph.kind == GraphPlace::Kind::Constant && triple.graph.constant >= kFirstComputed) {
-      warn("graph", triple.graph.constant, triple.at, storedGraphs());
+      warn("graph", triple.graph.constant, triple.at);
     }
     const bool is_type =
         !triple.path && !triple.predicate.isSlot() && textOf(triple.predicate.constant) == rdf::vocabulary::rdf("type");
     if (is_type && !triple.object.isSlot() && triple.object.constant >= kFirstComputed) {
-      warn("class", triple.object.constant, triple.object_at, knownClasses(query_.reader));
+      warn("class", triple.object.constant, triple.object_at);
     }
   }
   void warnPredicate(ValueId id, ast::SourceOffset at) {
-    if (id >= kFirstComputed) warn("property", id, at, knownPredicates(query_.reader));
+    if (id >= kFirstComputed) warn("property", id, at);
   }
   std::string textOf(ValueId id) const { return query_.terms.termOf(id).text; }
-  void warn(const std::string& what, ValueId id, ast::SourceOffset at, const std::vector<std::string>& known) {
+  /// Read at most once: a query may hold any number of unknown names.
+  const std::vector<std::string>& known(const std::string& what) {
+    const auto [entry, is_new] = known_.try_emplace(what);
+    if (is_new)
+      entry->second = what == "graph"   ? storedGraphs()
+                      : what == "class" ? knownClasses(query_.reader)
+                                        : knownPredicates(query_.reader);
+    return entry->second;
+  }
+  void warn(const std::string& what, ValueId id, ast::SourceOffset at) {
     const std::string name = textOf(id);
-    if (!warned_.emplace(name, true).second) return;
+    if (found_.size() >= kMaxFaults || !warned_.emplace(name, true).second) return;
     found_.push_back(warningAt(query_.options.source_name, query_.query.text, at,
-                               "the map has no " + what + " <" + name + ">", hintFor(name, known)));
+                               "the map has no " + what + " <" + name + ">", hintFor(name, known(what))));
   }
 
   PreparedQuery::Impl& query_;
   std::vector<Diagnostic> found_;
   std::map<std::string, bool> warned_;
+  std::map<std::string, std::vector<std::string>> known_;
 };
 
 }  // namespace
