@@ -129,6 +129,9 @@ TEST_F(ServeCommand, TasksAnswerAsTheCommandAsk) {
   const std::string to = std::to_string(stop["x"].get<double>()) + "," + std::to_string(stop["y"].get<double>());
   EXPECT_EQ(shared().get("/tasks/route?from=0,0&to=" + to).body,
             run("ask " + map + " route from=0,0 to=" + to + " --json").out);
+  const Reply degrees = shared().get("/tasks/costmap?format=geojson");
+  EXPECT_EQ(degrees.status, 400) << "the map has no coordinate system";
+  EXPECT_NE(degrees.body.find("frame=local"), std::string::npos) << degrees.body;
   for (const char* faulty : {"route?from=0,0", "route?from=0,0&to=1,1&width=-1", "route?from=0,0&to=1,1&wdth=1",
                              "costmap?format=xml", "costmap?frame=moon", "costmap?why=maybe", "search?for="})
     EXPECT_EQ(shared().get(std::string("/tasks/") + faulty).status, 400) << faulty;
@@ -226,7 +229,9 @@ TEST_F(ServeCommand, TriesPostedRulesForThoseWhoHaveTheToken) {
   writeFile(path("token"), "0123456789abcdef0123\n");
   const Served served = serve("--token-file " + path("token").string(), "tried.clx");
   const std::string right = "Authorization: Bearer 0123456789abcdef0123\r\n";
-  EXPECT_EQ(served.post("/rules/trial", type, own).status, 401);
+  const Reply refused = served.post("/rules/trial", type, own);
+  EXPECT_EQ(refused.status, 401);
+  EXPECT_NE(refused.body.find("a trial of rules needs the service's token"), std::string::npos) << refused.body;
   EXPECT_EQ(served.get("/rules/trial").status, 405);
   EXPECT_EQ(served.post("/rules/trial", "application/json", own, right).status, 415);
   const ServeJson same = jsonOf(served.post("/rules/trial", type, own, right));

@@ -23,22 +23,30 @@ HttpResponse textResponse(int status, std::string text) {
 
 namespace {
 
+/// The parameter of a request that helps.
+std::string hintFor(Remedy remedy) {
+  if (remedy == Remedy::LocalFrame) return "\n  hint: frame=local writes metres of the map frame instead";
+  if (remedy == Remedy::NameTime) return "\n  hint: since=TIME tells from when on scans count as later";
+  return "";
+}
+
 HttpResponse responseOf(const Error& error) {
+  const std::string told = error.what() + hintFor(error.remedy());
   switch (error.kind()) {
     case ErrorKind::InvalidArgument:
     case ErrorKind::FaultyInput:
-      return textResponse(400, error.what());
+      return textResponse(400, told);
     case ErrorKind::NotFound:
-      return textResponse(404, error.what());
+      return textResponse(404, told);
     case ErrorKind::StoreUnavailable: {
-      HttpResponse response = textResponse(503, error.what());
+      HttpResponse response = textResponse(503, told);
       response.headers.emplace_back("Retry-After", "1");
       return response;
     }
     case ErrorKind::BudgetExceeded:
-      return textResponse(503, std::string(error.what()) + "\nask for less, or raise the limits of the server");
+      return textResponse(503, told + "\nask for less, or raise the limits of the server");
   }
-  return textResponse(500, error.what());
+  return textResponse(500, told);
 }
 
 }  // namespace

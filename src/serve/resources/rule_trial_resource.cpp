@@ -11,7 +11,7 @@
 namespace cluxel::serve {
 
 HttpResponse answerRuleTrial(ServedMap& map, const ResourceRequest& asked, const std::string& token) {
-  requireToken(asked.request, token);
+  requireToken(asked.request, token, "a trial of rules");
   requireKnown(asked.target.parameters, {});
   const std::string type = mediaTypeOf(asked.request.header("content-type"));
   if (type != "application/yaml" && type != "text/plain")

@@ -116,15 +116,15 @@ bool isEqual(std::string_view a, std::string_view b) {
 
 }  // namespace
 
-void requireToken(const HttpRequest& request, const std::string& token) {
-  if (token.empty()) throw Refusal(403, "this service takes no updates: it was started without a token");
+void requireToken(const HttpRequest& request, const std::string& token, const std::string& what) {
+  if (token.empty()) throw Refusal(403, what + " needs a token, and this service was started without one");
   const std::string sent = request.header("authorization");
   constexpr std::string_view scheme = "bearer ";
   const bool is_bearer = sent.size() > scheme.size() && lowerCase(sent).starts_with(scheme);
   if (is_bearer && isEqual(std::string_view(sent).substr(scheme.size()), token)) return;
   throw Refusal(401,
                 is_bearer ? "the token is not the one of this service"
-                          : "an update needs the service's token; send 'Authorization: Bearer TOKEN'",
+                          : what + " needs the service's token; send 'Authorization: Bearer TOKEN'",
                 {{"WWW-Authenticate", R"(Bearer realm="cluxel")"}});
 }
 
@@ -132,7 +132,7 @@ HttpResponse answerSparql(ServedMap& map, const HttpRequest& request, const Targ
                           const ServiceOptions& options) {
   const Operation operation = operationOf(request, target);
   if (operation.update) {
-    requireToken(request, options.token);
+    requireToken(request, options.token, "an update");
     return runUpdate(map, operation, options.request);
   }
   if (operation.query) return runQuery(map, request, operation, options.request);

@@ -16,7 +16,7 @@ namespace cluxel::serve {
 HttpResponse answerSparql(ServedMap& map, const HttpRequest& request, const Target& target, const std::string& endpoint,
                           const ServiceOptions& options);
 
-/// Throws Refusal: 403 when the service takes no updates, 401 without the right token.
-void requireToken(const HttpRequest& request, const std::string& token);
+/// Throws Refusal: 403 when the service has no token, 401 without the right one. `what` needs it: "an update".
+void requireToken(const HttpRequest& request, const std::string& token, const std::string& what);
 
 }  // namespace cluxel::serve
