@@ -85,6 +85,36 @@ test('FROM and FROM NAMED choose the graphs as in cluxel query', async () => {
   assert.deepEqual([asked.form, asked.value], ['truth', false]);
 });
 
+test('names that the page does not have are told with the answer', async () => {
+  const told = async (text) => {
+    await ask(open.page, text);
+    return open.page.textContent('.status:not(.fault)');
+  };
+  assert.match(await told('ASK { ?s a clx:Tre }'), /^No · .*\nThe page has no class clx:Tre\. Did you mean clx:Tree\?$/);
+  assert.match(await told('SELECT * { ?s clx:heigth ?o }'), /^0 rows · .*\nThe page has no clx:heigth\. Did you mean clx:height\?$/);
+  assert.match(await told(`SELECT (COUNT(*) AS ?n) FROM <${GRAPH}nix> { ?s ?p ?o }`), /\nThe page has no graph https:\/\/.*\/nix\.$/);
+  assert.match(await told(`ASK { GRAPH <${GRAPH}history> { ?s ?p ?o } }`), /\nThe graph of the history is not in the page: cluxel query has it\.$/);
+  for (const right of ['SELECT * { ?o a clx:Tree ; clx:height ?h } LIMIT 3', `ASK { GRAPH <${GRAPH}inferred> { ?s ?p ?o } }`,
+                       'SELECT * { ?o a clx:Tree FILTER(xsd:integer(1.0) = 1) } LIMIT 1'])
+    assert.match(await told(right), /ms$/, right);
+});
+
+test('the known prefixes need no PREFIX line, and others are told with their place', async () => {
+  const bare = 'SELECT (COUNT(*) AS ?n) { ?o a clx:Tree ; rdf:type ?type }';
+  assert.deepEqual(await pageCounts(bare), countsOf(bare));
+  const own = `PREFIX clx: <http://own/> ${bare}`;
+  assert.deepEqual(await pageCounts(own), countsOf(own));
+  const fault = async (text) => {
+    await ask(open.page, text);
+    return open.page.textContent('.status.fault');
+  };
+  assert.match(await fault('SELECT * {\n ?o a my:Tree }'), /^Line 2, column 7: .*the prefix my: is not declared; begin the question with PREFIX my:/);
+  const wrong = await fault('SELECT * { ?o a clx:Tree ; }} ');
+  assert.match(wrong, /^Line 1, column 31: the question cannot be read here: cluxel query --check/);
+  assert.equal(await fault('PREFIX clx: <urn:> SELECT * { ?o a clx:Tree ; }} '), wrong.replace('31', '50'));
+  assert.doesNotMatch(wrong, /\.\.=|Prefix not found|expected/);
+});
+
 test('times are told as the map writes them, so that a copied one is found', async () => {
   const texts = ['SELECT ?cloud ?time { ?cloud a clx:Cloud ; <http://www.w3.org/ns/sosa/resultTime> ?time } ORDER BY ?cloud',
                  'SELECT (MAX(?time) AS ?last) { ?cloud <http://www.w3.org/ns/sosa/resultTime> ?time }'];

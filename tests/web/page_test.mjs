@@ -246,10 +246,10 @@ test('the address brings camera, selection and question back', async () => {
   assert.equal(await open.page.inputValue('#question'), 'trees.rq');
 });
 
-test('a faulty question is told with the engine\'s words', async () => {
+test('a faulty question is told with its place', async () => {
   await ask(open.page, 'SELECT ?x { ?x');
   assert.ok(await open.page.isVisible('.status.fault'));
-  assert.match(await open.page.textContent('.status'), /^Line 1, column \d+: .*expected/s);
+  assert.match(await open.page.textContent('.status'), /^Line 1, column \d+: the question cannot be read here/);
   await ask(open.page, 'ASK { ?s ?p ?o }');
   assert.match(await open.page.textContent('.status'), /^Yes/);
 });

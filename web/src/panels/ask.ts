@@ -8,14 +8,16 @@ import type { Place, Places } from '../data/places';
 import type { Stage } from '../scene/stage';
 import type { Answer, RdfTerm, Rows } from '../sparql/answers';
 import type { Engine } from '../sparql/engine';
+import { nearest } from '../sparql/names';
 import { bodyOf, withValues } from '../sparql/questions';
 import type { Store } from '../state';
-import { Editor } from './editor';
+import { Editor, shortened } from './editor';
 import { middleOfPlace } from './places';
 import { AnswerTable, RowObjects } from './table';
 
 const OWNERS = `PREFIX clx: <https://w3id.org/cluxel/ontology#> PREFIX sosa: <http://www.w3.org/ns/sosa/>
 SELECT ?part ?object { ?part clx:partOf|clx:primitiveOf|sosa:hasFeatureOfInterest ?object }`;
+const HISTORY = 'https://w3id.org/cluxel/graph/history';
 const RANKED = /\bORDER\s+BY\b/i;
 
 export class AskPanel {
@@ -146,8 +148,9 @@ export class AskPanel {
     const place = /^error at (\d+):(\d+): (.*)$/s.exec(message);
     if (!place) return this.showFault(message);
     this.editor.pointTo(Number(place[1]), Number(place[2]));
-    const detail = place[3].length > 240 ? `${place[3].slice(0, 240)}…` : place[3];
-    this.showFault(`Line ${place[1]}, column ${place[2]}: the question cannot be read here.\n${detail}`);
+    // The engine lists some of what it expects, in a notation of its own, which leads people astray.
+    const detail = place[3].startsWith('expected') ? 'cluxel query --check tells what is missing or too much' : place[3];
+    this.showFault(`Line ${place[1]}, column ${place[2]}: the question cannot be read here: ${detail}.`);
   }
 
   private showFault(message: string): void {
@@ -158,10 +161,22 @@ export class AskPanel {
     queueMicrotask(() => this.status.classList.add('fault'));
   }
 
+  /** Warnings about names that are not in the page. */
+  private warningsOf({ unknown }: Answer): string[] {
+    const { classes, values } = this.model;
+    const known = [...classes.keys(), ...values.properties.map((property) => property.iri)].map(shortened);
+    return unknown.map(({ what, iri }) => {
+      if (iri === HISTORY) return 'The graph of the history is not in the page: cluxel query has it.';
+      const name = shortened(iri), near = what === 'graph' ? undefined : nearest(name, known);
+      return `The page has no ${what === 'name' ? '' : `${what} `}${name}.${near ? ` Did you mean ${near}?` : ''}`;
+    });
+  }
+
   private show(answer: Answer, question: Question | undefined, places: Map<string, Place>): void {
+    const warnings = this.warningsOf(answer).map((warning) => `\n${warning}`).join('');
     const time = `${Math.max(1, Math.round(answer.milliseconds))} ms`;
     if (answer.form === 'truth') {
-      this.showFault(`${answer.value ? 'Yes' : 'No'} · ${time}`);
+      this.showFault(`${answer.value ? 'Yes' : 'No'} · ${time}${warnings}`);
       queueMicrotask(() => this.status.classList.remove('fault'));
       return;
     }
@@ -174,7 +189,7 @@ export class AskPanel {
     this.placesOfRow = rows.rows.map((row, i) => (objectsOfRow[i].length > 0 ? undefined : placeIn(row, places)));
     const placeless = objectsOfRow.filter((found, i) => found.length === 0 && !this.placesOfRow[i]).length;
     this.status.textContent = [`${counted(rows.rows.length)} ${rows.rows.length === 1 ? 'row' : 'rows'}`, time,
-                               placeless > 0 && `${counted(placeless)} without a place in the map`].filter(Boolean).join(' · ');
+                               placeless > 0 && `${counted(placeless)} without a place in the map`].filter(Boolean).join(' · ') + warnings;
     this.table.show(rows, question, objectsOfRow, this.placesOfRow.map(Boolean));
     if (this.placesOfRow.some(Boolean)) this.store.set('places', true);
     this.store.set('marks', []);

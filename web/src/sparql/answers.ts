@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Answers as values that pass between the page and the worker.
+import type { UnknownName } from './names';
 
 export interface RdfTerm {
   kind: 'iri' | 'blank' | 'literal';
@@ -11,7 +12,8 @@ export interface RdfTerm {
 export interface Rows { form: 'rows'; variables: string[]; rows: (RdfTerm | null)[][] }
 export interface Truth { form: 'truth'; value: boolean }
 export interface Graph { form: 'graph'; triples: RdfTerm[][] }
-export type Answer = (Rows | Truth | Graph) & { milliseconds: number };
+/** `unknown`: names in the question that the page's quads do not have. */
+export type Answer = (Rows | Truth | Graph) & { milliseconds: number; unknown: UnknownName[] };
 
 export interface Load { kind: 'load'; engine: ArrayBuffer; terms: string; quads: ArrayBuffer }
 export interface Ask { kind: 'ask'; id: number; text: string }

@@ -5,6 +5,7 @@ import init, { Store } from 'oxigraph/web.js';
 import type { Answer, Ask, FromWorker, Load, RdfTerm, ToWorker } from './answers';
 import { namesDataset } from './dataset';
 import { timesIn } from './lexical_times';
+import { missingPrefixes, namesIn, undeclaredPrefix, type UnknownName } from './names';
 import { nquadsOf } from './packed_quads';
 
 interface EngineTerm {
@@ -68,29 +69,46 @@ function isReadable(blank: Store, text: string): boolean {
   }
 }
 
-function answerOf({ map, blank, times }: Stores, text: string): Answer {
-  const start = performance.now();
+/** The names that no quad has. */
+function unknownNames(map: Store, text: string): UnknownName[] {
+  return namesIn(text).filter(({ what, iri }) => {
+    const name = `<${iri}>`, quads = [`?s ${name} ?o`, `?s ?p ${name}`, `${name} ?p ?o`].map((pattern) => `{ ${pattern} }`);
+    const isKnown = what === 'graph' ? `GRAPH ${name} { ?s ?p ?o }` : quads.join(' UNION ');
+    return map.query(`ASK { ${isKnown} }`, { use_default_graph_as_union: true }) === false;
+  });
+}
+
+function answerOf({ map, blank, times }: Stores, written: string): Answer {
+  const start = performance.now(), text = missingPrefixes(written) + written;
   const isUnion = !namesDataset(text, (changed) => isReadable(blank, changed));
   const result = map.query(text, { use_default_graph_as_union: isUnion }) as unknown;
-  const timed = (answer: Answer | Omit<Answer, 'milliseconds'>) =>
-    ({ ...answer, milliseconds: performance.now() - start }) as Answer;
-  if (typeof result === 'boolean') return timed({ form: 'truth', value: result } as Answer);
+  const milliseconds = performance.now() - start, unknown = unknownNames(map, written);
+  const timed = (answer: object) => ({ ...answer, milliseconds, unknown }) as Answer;
+  if (typeof result === 'boolean') return timed({ form: 'truth', value: result });
   if (makesGraph(blank, text)) {
     const quads = result as { subject: EngineTerm; predicate: EngineTerm; object: EngineTerm }[];
     const triples = quads.map((quad) => [quad.subject, quad.predicate, quad.object].map((term) => termOf(term, times)!));
-    return timed({ form: 'graph', triples } as Answer);
+    return timed({ form: 'graph', triples });
   }
   const solutions = result as Map<string, EngineTerm>[], variables = variablesOf(blank, text);
   const rows = solutions.map((solution) => variables.map((name) => termOf(solution.get(name), times)));
-  return timed({ form: 'rows', variables, rows } as Answer);
+  return timed({ form: 'rows', variables, rows });
 }
 
 const messageOf = (fault: unknown): string => (fault instanceof Error ? fault.message : String(fault));
 
-/** The engine's words, but for functions that `cluxel query` has and the page has not. */
-function toldFault(fault: unknown): string {
+/**
+ * The engine's words, but for prefixes that nothing declares, and functions that `cluxel query` has and the page has
+ * not. Its places count the PREFIX lines that were put before the question.
+ */
+function toldFault(fault: unknown, text: string): string {
+  const undeclared = /Prefix not found/.test(messageOf(fault)) ? undeclaredPrefix(text) : undefined;
+  if (undeclared)
+    return `error at ${undeclared.line}:${undeclared.column}: the prefix ${undeclared.prefix}: is not declared; ` +
+      `begin the question with PREFIX ${undeclared.prefix}: <…>`;
   const unknown = UNKNOWN_FUNCTION.exec(messageOf(fault));
-  if (!unknown) return messageOf(fault);
+  if (!unknown)
+    return messageOf(fault).replace(/^error at 1:(\d+)/, (_, column) => `error at 1:${Number(column) - missingPrefixes(text).length}`);
   return `The page has no function <${unknown[1]}>. Ask with cluxel query: it has the functions of GeoSPARQL and Cluxel.`;
 }
 
@@ -99,7 +117,7 @@ function ask(message: Ask): void {
   try {
     scope.postMessage({ kind: 'answer', id: message.id, answer: answerOf(stores, message.text) });
   } catch (fault) {
-    scope.postMessage({ kind: 'fault', id: message.id, message: toldFault(fault) });
+    scope.postMessage({ kind: 'fault', id: message.id, message: toldFault(fault, message.text) });
   }
 }
 
