@@ -34,18 +34,19 @@ TaskCell namedCell(const std::string& text) {
   return text.empty() ? TaskCell() : TaskCell(text);
 }
 
-const std::vector<QueryColumn>& inventoryColumns() {
-  static const std::vector<QueryColumn> columns{
-      {"kind", "text", "class of the object, ParkingRow or Sidewalk"},
-      {"object", "IRI", "the object or way; absent for rows"},
-      {"street", "text", "the nearest street; absent where none is known"},
-      {"x", "m", "position in the map frame; of a tree its trunk"},
-      {"y", "m", "position in the map frame"},
-      {"height", "m", "top above the local ground"},
-      {"crown", "m", "diameter of the circle that is as large as the crown from above"},
-      {"width", "m", "of a row; of a sidewalk the median across it"},
-      {"length", "m", "of a row or sidewalk"},
-      {"count", "1", "vehicles of a row"}};
+/// With the streets of a file, the column of the nearest one.
+std::vector<QueryColumn> inventoryColumns(bool with_streets) {
+  std::vector<QueryColumn> columns{{"kind", "text", "class of the object, ParkingRow or Sidewalk"},
+                                   {"object", "IRI", "the object or way; absent for rows"},
+                                   {"x", "m", "position in the map frame; of a tree its trunk"},
+                                   {"y", "m", "position in the map frame"},
+                                   {"height", "m", "top above the local ground"},
+                                   {"crown", "m", "diameter of the circle that is as large as the crown from above"},
+                                   {"width", "m", "of a row; of a sidewalk the median across it"},
+                                   {"length", "m", "of a row or sidewalk"},
+                                   {"count", "1", "vehicles of a row"}};
+  if (with_streets)
+    columns.insert(columns.begin() + 2, {"street", "text", "the nearest street; absent where none is near"});
   return columns;
 }
 
@@ -195,6 +196,20 @@ std::optional<std::string> noteOfMissingRules(const mapping::MapReader& map, con
          "rules/ that end in .rq to the map";
 }
 
+/// Tells of a file of streets that has none near the things: most often its coordinates are not what they should be.
+std::optional<std::string> noteOfFarStreets(double nearest_m, double within_m) {
+  constexpr double other_place_m = 10'000;
+  if (std::isnan(nearest_m) || nearest_m <= within_m) return std::nullopt;
+  std::array<char, 160> line{};
+  std::snprintf(line.data(), line.size(), "no street lies within %.0f m of what is listed; the nearest is %.0f m away",
+                within_m, nearest_m);
+  if (!std::isfinite(nearest_m))
+    std::snprintf(line.data(), line.size(), "no street lies where the map's coordinate system is defined");
+  std::string note = line.data();
+  if (nearest_m > other_place_m) note += ": are longitude and latitude exchanged? GeoJSON has the longitude first";
+  return note;
+}
+
 /// Tells how much is left out, because later scans show it to be gone.
 void addNotesOfGone(const mapping::MapReader& map, std::size_t rows_left_out, TaskAnswer& answer) {
   const std::vector<bool> is_gone = goneAmong(map);
@@ -221,21 +236,24 @@ InventoryParams placesAmong(const std::vector<RegisterEntry>& entries) {
 
 TaskAnswer inventoryAnswer(const mapping::MapReader& map, const InventoryParams& params,
                            const std::vector<Street>& streets) {
-  TaskAnswer answer{inventoryColumns(), {}};
+  TaskAnswer answer{inventoryColumns(!streets.empty()), {}};
   std::map<std::string, std::size_t> counts;
   const Inventory inventory = inventoryOf(map, params, streets);
   for (const InventoryItem& item : inventory.items) {
     ++counts[item.kind];
     const TaskCell count = item.kind == "ParkingRow" ? TaskCell(static_cast<double>(item.count)) : TaskCell();
-    answer.rows.push_back({{item.kind, namedCell(item.object), namedCell(item.street), item.at.x(), item.at.y(),
-                            measuredCell(item.height_m), measuredCell(item.crown_m), measuredCell(item.width_m),
-                            measuredCell(item.length_m), count},
+    answer.rows.push_back({{item.kind, namedCell(item.object), item.at.x(), item.at.y(), measuredCell(item.height_m),
+                            measuredCell(item.crown_m), measuredCell(item.width_m), measuredCell(item.length_m), count},
                            shapeOfItem(item)});
+    auto& cells = answer.rows.back().cells;
+    if (!streets.empty()) cells.insert(cells.begin() + 2, namedCell(item.street));
   }
   std::string note;
   for (const auto& [kind, count] : counts) note += (note.empty() ? "" : ", ") + std::to_string(count) + " " + kind;
   if (!note.empty()) answer.notes.push_back(note);
   if (const auto missing = noteOfMissingRules(map, params)) answer.notes.push_back(*missing);
+  if (const auto far = noteOfFarStreets(inventory.nearest_street_m, params.street_within_m))
+    answer.notes.push_back(*far);
   addNotesOfGone(map, inventory.rows_left_out, answer);
   return answer;
 }
@@ -282,7 +300,7 @@ std::vector<Task> surveyTasks() {
   inventory.title = "Which signs, lamps, trees, parked vehicles and sidewalks are there, and how large are they?";
   inventory.parameters = {{"kind", "", "", "a class, ParkingRow or Sidewalk; else street furniture, trees and both",
                            Kind::Class, false, true}};
-  inventory.columns = inventoryColumns();
+  inventory.columns = inventoryColumns(false);
   inventory.run = [](const TaskContext& context, const TaskValues& values) {
     return inventoryAnswer(context.map, inventoryOfKinds(context.map, values.all("kind")));
   };

@@ -7,7 +7,7 @@
 
 namespace cluxel::tasks {
 
-/// With the columns of the task `inventory`.
+/// With the columns of the task `inventory` and, where there are streets, the name of the nearest one as the third.
 TaskAnswer inventoryAnswer(const mapping::MapReader& map, const InventoryParams& params,
                            const std::vector<Street>& streets = {});
 /// A row for each entry of the register and for each thing that is not in it.

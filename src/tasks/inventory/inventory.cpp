@@ -59,16 +59,30 @@ double distanceToCourse(const Eigen::Vector2d& p, const std::vector<Eigen::Vecto
   return nearest;
 }
 
-std::string streetOf(const Eigen::Vector2d& p, const std::vector<Street>& streets, double within_m) {
+struct NearestStreet {
   std::string name;
-  double nearest = within_m;
+  double distance_m = std::numeric_limits<double>::infinity();
+};
+
+NearestStreet nearestStreet(const Eigen::Vector2d& p, const std::vector<Street>& streets) {
+  NearestStreet nearest;
   for (const Street& street : streets) {
     const double distance = distanceToCourse(p, street.course);
-    if (distance > nearest || (distance == nearest && !name.empty())) continue;
-    nearest = distance;
-    name = street.name;
+    if (distance < nearest.distance_m) nearest = {street.name, distance};
   }
-  return name;
+  return nearest;
+}
+
+/// Names the street of each item. Returns the smallest distance.
+double assignStreets(std::vector<InventoryItem>& items, const std::vector<Street>& streets, double within_m) {
+  if (items.empty() || streets.empty()) return kNotMeasured;
+  double least = std::numeric_limits<double>::infinity();
+  for (InventoryItem& item : items) {
+    const NearestStreet nearest = nearestStreet(item.at, streets);
+    if (nearest.distance_m <= within_m) item.street = nearest.name;
+    least = std::min(least, nearest.distance_m);
+  }
+  return least;
 }
 
 struct ParkedVehicle {
@@ -226,8 +240,8 @@ Inventory inventoryOf(const mapping::MapReader& map, const InventoryParams& para
     return std::tuple(a.kind, a.at.x(), a.at.y()) < std::tuple(b.kind, b.at.x(), b.at.y());
   });
   items.insert(items.end(), derived.begin(), derived.end());
-  for (InventoryItem& item : items) item.street = streetOf(item.at, streets, params.street_within_m);
-  return {std::move(items), rows.rows_left_out};
+  const double nearest_m = assignStreets(items, streets, params.street_within_m);
+  return {std::move(items), rows.rows_left_out, nearest_m};
 }
 
 }  // namespace cluxel::tasks

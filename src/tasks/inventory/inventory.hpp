@@ -55,6 +55,7 @@ inline constexpr std::size_t kFewestInBrokenRow = 3;
 struct Inventory {
   std::vector<InventoryItem> items;
   std::size_t rows_left_out = 0;  ///< parking rows that lost vehicles, and have fewer than kFewestInBrokenRow left
+  double nearest_street_m = kNotMeasured;  ///< the smallest distance of an item from a street
 };
 /// Without objects that later scans show to be gone. Objects first, by class and IRI, then rows and sidewalks by place.
 /// Throws Error (NotFound) for an unknown class.
