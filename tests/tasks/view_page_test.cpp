@@ -260,6 +260,14 @@ TEST(CampusMapPage, HoldsTheTasksAndTheRulesOfTheMap) {
   for (std::size_t i = 0; i < inputs.rules.size(); ++i) EXPECT_EQ(map.at("rules")[i].at("text"), inputs.rules[i].text);
 }
 
+TEST(CampusMapPage, TellsClassesOfWhichTheMapHasOneObjectOverAllOfIt) {
+  const ViewDocument classes = ViewDocument::parse(blockOf(wholePage(), "objects")).at("classes");
+  std::set<std::string> whole;
+  for (const ViewDocument& one : classes)
+    if (one.value("whole", false)) whole.insert(one.at("iri"));
+  EXPECT_EQ(whole, std::set<std::string>{vocabulary::clx("Ground")});
+}
+
 TEST(CampusMapPage, NeedsThePagesProgram) {
   const auto write = [](const std::string& page) {
     writeViewPage(CampusMap::shared().map(), page, {}, {}, [](std::string_view) {});

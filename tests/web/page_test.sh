@@ -46,8 +46,19 @@ cp campus.clx changed.clx
 "$cluxel" retract changed.clx scan_002.pcd >/dev/null 2>&1
 "$cluxel" view changed.clx -o changed.html
 
-# The campus with a service, which may change it.
-cp campus.clx served.clx
+# The campus with classes of its own and a service, which may change it.
+cat >own.ttl <<'END'
+@prefix my: <https://example.org/town#> .
+@prefix clx: <https://w3id.org/cluxel/ontology#> .
+@prefix rdfs: <http://www.w3.org/2000/01/rdf-schema#> .
+@prefix owl: <http://www.w3.org/2002/07/owl#> .
+@prefix skos: <http://www.w3.org/2004/02/skos/core#> .
+my:StreetSign a owl:Class ; rdfs:subClassOf clx:StreetFurniture ; skos:prefLabel "town sign"@en .
+my:LampA a owl:Class ; rdfs:subClassOf clx:StreetFurniture ; skos:prefLabel "double lamp"@en .
+my:LampB a owl:Class ; rdfs:subClassOf clx:StreetFurniture ; skos:prefLabel "double lamp"@en .
+clx:StreetLamp skos:prefLabel "Sokak Lambası"@tr .
+END
+"$cluxel" build scans -o served.clx --ontology "$source_dir/ontology/core.ttl" "$source_dir/ontology/outdoor.ttl" own.ttl 2>/dev/null
 printf '0123456789abcdef0123\n' >token
 "$cluxel" serve served.clx --port 0 --token-file token >url 2>access.log &
 service=$!

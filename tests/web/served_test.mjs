@@ -80,6 +80,29 @@ test('a refused value is told with the service\'s words', async () => {
   open.faults = open.faults.filter((fault) => !/status of 40[04]/.test(fault));  // the browser notes the answer's status
 });
 
+test('class words go to the service as they are typed, and mean what they mean to cluxel ask', async () => {
+  const { page } = open;
+  const asked = async (name, values) => {
+    await askTask(page, name, values);
+    return page.textContent('.tasks .status');
+  };
+  const own = taskOf('search', 'for=town sign', 'from=0,0'), other = taskOf('search', 'for=StreetSign', 'from=0,0');
+  assert.notDeepEqual(own.notes, other.notes);
+  assert.ok((await asked('search', { for: 'town sign', from: '0,0' })).includes(own.notes[0]));
+  const kinds = taskOf('inventory', 'kind=Sokak Lambası', 'kind=tree');
+  assert.ok(kinds.rows.length > 0);
+  assert.match(await asked('inventory', { kind: 'Sokak Lambası, tree' }), new RegExp(`^${kinds.rows.length} rows`));
+  await page.click('[data-task=search]');
+  await page.fill('#task-for', 'double lamp');
+  await page.click('.tasks .primary');
+  await page.waitForSelector('.tasks .status.fault');
+  assert.match(await page.textContent('.tasks .status.fault'), /names 2 classes/);
+  const offered = await page.$$eval('#task-classes option', (options) => options.map((option) => option.value));
+  assert.equal(new Set(offered).size, offered.length);
+  assert.ok(offered.includes('StreetSign') && offered.includes('https://example.org/town#StreetSign'));
+  open.faults = open.faults.filter((fault) => !/status of 404/.test(fault));
+});
+
 test('a changed threshold is tried, and coloured before and after', async () => {
   const { page } = open;
   await page.click('#tab-rules');
@@ -144,6 +167,30 @@ test('the lineage of an object comes from the history', async () => {
   await page.click('.lineage summary');
   await page.waitForSelector('.lineage-list > *');
   assert.match(await page.textContent('.lineage-list'), /made by the build/);
+});
+
+test('a statement needs something stated, and offers classes that can be stated, each told from the others', async () => {
+  const { page } = open;
+  await askNamed(page, 'trees.rq');
+  await page.click('.answer tbody tr.live:first-child');
+  await page.click('text=Wrong class, or something to say?');
+  assert.ok(await page.isDisabled('text=Save in the map'));
+  assert.equal(await page.textContent('.correction .statement'), '');
+  await page.fill('#remark', '  ');
+  assert.ok(await page.isDisabled('text=Save in the map'));
+  const offered = await page.$$eval('#right-class option', (options) => options.map((option) => [option.value, option.textContent]).slice(1));
+  const titles = offered.map(([, title]) => title), iris = offered.map(([iri]) => iri);
+  assert.equal(new Set(titles).size, titles.length);
+  for (const name of ['Tree', 'StreetLamp', 'Vehicle']) assert.ok(iris.includes(`https://w3id.org/cluxel/ontology#${name}`), name);
+  for (const name of ['Ground', 'Cloud', 'TreeTrunk', 'OperatorStatement', 'Object'])
+    assert.ok(!iris.includes(`https://w3id.org/cluxel/ontology#${name}`), name);
+  const object = await page.evaluate(() => window.cluxelPage.store.state.selected.iri), tried = join(folder, 'every_class.clx');
+  for (const iri of iris) {
+    execFileSync('cp', [map, tried]);
+    cluxel('update', tried, '-e', `INSERT DATA { <${object}> a <${iri}> }`);  // throws when it is refused
+  }
+  await page.selectOption('#right-class', 'https://example.org/town#StreetSign');
+  assert.ok(await page.isEnabled('text=Save in the map'));
 });
 
 test('a statement is saved in the map for those who have the token', async () => {

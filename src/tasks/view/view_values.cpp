@@ -5,11 +5,13 @@
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "mapping/facts/object_geometry.hpp"
 #include "rdf/map_iris.hpp"
 #include "rdf/ontology/ontology.hpp"
 #include "rdf/vocabulary.hpp"
+#include "rules/objects/finished_objects.hpp"
 #include "sparql/query_engine.hpp"
 #include "tasks/ask/task_table.hpp"
 #include "tasks/changes/site_changes.hpp"
@@ -99,15 +101,21 @@ ViewJson propertiesJson(const rdf::OntologyView& ontology) {
   return all;
 }
 
-ViewJson classesJson(const rdf::OntologyView& ontology) {
+ViewJson classesJson(const mapping::MapReader& map) {
+  std::set<std::string> whole;
+  for (const rules::SemanticObject& object : map.objects())
+    if (object.id == rules::idOfClassWide(object.class_iri)) whole.insert(object.class_iri);
+  const rdf::OntologyView ontology = ontologyViewOf(map.quads());
   ViewJson all = ViewJson::array();
-  for (const rdf::OntologyClass& known : ontology.classes)
+  for (const rdf::OntologyClass& known : ontology.classes) {
     all.push_back({{"iri", known.iri},
                    {"label", known.label()},
                    {"comment", known.comment},
                    {"color", known.color},
                    {"movable", known.mobility == rdf::Mobility::Movable},
                    {"ancestors", known.ancestors}});
+    if (whole.contains(known.iri)) all.back()["whole"] = true;
+  }
   return all;
 }
 
@@ -188,7 +196,7 @@ std::string lineageJson(const mapping::MapReader& map) {
 
 std::string objectValuesJson(const mapping::MapReader& map) {
   const perception::SceneCluxels& cluxels = map.scene().cluxels;
-  ViewJson json{{"classes", classesJson(ontologyViewOf(map.quads()))}};
+  ViewJson json{{"classes", classesJson(map)}};
   for (const char* column : {"id", "class", "confidence", "rule", "box", "bottom", "top", "points", "parts"})
     json[column] = ViewJson::array();
   for (const rules::SemanticObject& object : map.objects()) {

@@ -15,6 +15,8 @@ export interface Box {
 export interface Part { class: string; box: Box }
 export interface ClassInfo {
   iri: string; label: string; comment: string; color: string; movable: boolean; ancestors: string[];
+  /** The map has one object of it, over all of the map. */
+  whole?: boolean;
 }
 export interface MapObject {
   number: number;
@@ -88,6 +90,11 @@ export function localName(iri: string): string {
   return iri.slice(Math.max(iri.lastIndexOf('#'), iri.lastIndexOf('/')) + 1);
 }
 
+/** A class such that the service and the commands mean no other: "Tree" of Cluxel's own, else the IRI. */
+export function classWord(iri: string): string {
+  return iri.startsWith(CLX) ? iri.slice(CLX.length) : iri;
+}
+
 function boxOf(v: number[]): Box {
   return { x: v[0], y: v[1], z: v[2], length: v[3], width: v[4], height: v[5], yaw: v[6] };
 }
@@ -132,6 +139,13 @@ export class MapModel {
     const made = { iri, label: localName(iri), comment: '', color: UNKNOWN_COLOR, movable: false, ancestors: [] };
     this.classes.set(iri, made);
     return made;
+  }
+
+  /** The label for people; where several classes have it, with what tells them apart. */
+  titleOf(info: ClassInfo): string {
+    const title = capitalised(info.label), word = classWord(info.iri);
+    const isShared = [...this.classes.values()].some((other) => other !== info && capitalised(other.label) === title);
+    return isShared ? `${title} (${word})` : title;
   }
 
   objectOf(iri: string): MapObject | undefined {

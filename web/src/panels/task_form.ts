@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The parameters of a task as fields, and their values as a request or a command.
-import { capitalised, localName, type MapModel, type Task, type TaskParameter } from '../data/model';
+import { capitalised, classWord, type MapModel, type Task, type TaskParameter } from '../data/model';
 import { el, iconButton } from '../dom';
 import type { Store } from '../state';
 
@@ -12,9 +12,9 @@ export class TaskForm {
 
   show(task: Task): void {
     this.task = task;
-    const classes = [...new Set([...this.model.classes.keys()].map(localName))].sort();
+    const classes = [...this.model.classes.values()].sort((a, b) => (a.label < b.label ? -1 : 1));
     this.element.replaceChildren(
-      el('datalist', { id: 'task-classes' }, ...classes.map((name) => el('option', { value: name }))),
+      el('datalist', { id: 'task-classes' }, ...classes.map((info) => el('option', { value: classWord(info.iri), label: info.label }))),
       ...task.parameters.map((parameter) => this.field(parameter)));
   }
 
@@ -24,24 +24,11 @@ export class TaskForm {
       const input = this.element.querySelector<HTMLInputElement>(`[name="${parameter.name}"]`)!;
       const text = parameter.kind === 'flag' ? String(input.checked) : input.value.trim();
       if (text === '' || text === (parameter.default ?? (parameter.kind === 'flag' ? 'false' : ''))) return [];
-      const texts = parameter.kind === 'class' ? this.classNames(text, parameter.repeated ?? false)
-        : parameter.repeated ? text.split(/[,\s]+/).filter(Boolean) : [text];
-      return texts.map((one) => [parameter.name, one]);
+      if (!parameter.repeated) return [[parameter.name, text]];
+      // Names of classes hold spaces. They go as they are typed: the service knows what they mean, or refuses them.
+      const between = parameter.kind === 'class' ? /\s*,\s*/ : /[,\s]+/;
+      return text.split(between).filter(Boolean).map((one) => [parameter.name, one]);
     });
-  }
-
-  /** Several stand between commas or, without spaces in them, between spaces. */
-  private classNames(text: string, isRepeated: boolean): string[] {
-    if (!isRepeated) return [this.classNamed(text) ?? text];
-    return text.split(',').map((one) => one.trim()).filter(Boolean).flatMap((one) =>
-      this.classNamed(one) ?? one.split(/\s+/).map((word) => this.classNamed(word) ?? word));
-  }
-
-  /** "street sign" and "streetsign" as "StreetSign"; names that no class has are for the service to judge. */
-  private classNamed(text: string): string | undefined {
-    const plain = (name: string) => name.toLowerCase().replace(/\s+/g, '');
-    const named = [...this.model.classes.values()].find((info) => plain(localName(info.iri)) === plain(text) || plain(info.label) === plain(text));
-    return named && localName(named.iri);
   }
 
   /** What is required and empty. */
@@ -61,7 +48,7 @@ export class TaskForm {
     const input = el('input', {
       type: 'text', id, name: parameter.name, value: parameter.default ?? '', autocomplete: 'off', title: parameter.help,
       list: parameter.kind === 'class' ? 'task-classes' : undefined, inputmode: isNumber ? 'decimal' : undefined,
-      placeholder: parameter.kind === 'place' ? 'X,Y or an object' : parameter.kind === 'class' ? 'a class' : undefined,
+      placeholder: parameter.kind === 'place' ? 'X,Y or an object' : parameter.kind === 'class' ? (parameter.repeated ? 'a class, another class' : 'a class') : undefined,
       required: parameter.required ?? false,
       onkeydown: (event: KeyboardEvent) => { if (event.key === 'Enter') this.run(); },
     });

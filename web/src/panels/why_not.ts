@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Why an object has not a class that a person expects: the reasons in the page where a rule decided, else the service's.
-import { capitalised, localName, type MapModel, type MapObject, type Verdict } from '../data/model';
+import { classWord, CLX, type MapModel, type MapObject, type Verdict } from '../data/model';
 import type { Service } from '../data/service';
 import { el, faultNote } from '../dom';
 import { verdictBody } from './reasons';
@@ -14,7 +14,7 @@ export class WhyNotQuestion {
   constructor(private readonly model: MapModel, private readonly service: Service | undefined, private readonly object: MapObject) {
     const classes = model.shownClasses.map(({ info }) => info).filter((info) => info !== object.class);
     const select = el('select', { id: 'why-not', onchange: () => void this.ask(select.value) }, el('option', { value: '' }, 'choose a class'),
-                      ...classes.map((info) => el('option', { value: localName(info.iri) }, capitalised(info.label))));
+                      ...classes.map((info) => el('option', { value: classWord(info.iri) }, model.titleOf(info))));
     this.element = el('div', { class: 'why-not-question' }, el('label', { for: 'why-not', class: 'label' }, 'Why is it not a …?'), select, this.answer);
   }
 
@@ -26,10 +26,10 @@ export class WhyNotQuestion {
     if (!name) return;
     if (this.service) return this.askService(name);
     const verdicts = ((await this.model.reasonsOf(this.object))?.decisions ?? []).filter((verdict) =>
-      !verdict.accepted && localName(verdict.class.replace(/^clx:/, '#')) === name);
+      !verdict.accepted && classWord(verdict.class.replace(/^clx:/, CLX)) === name);
     if (verdicts.length > 0) return this.show(verdicts);
     this.answer.replaceChildren(el('p', { class: 'note' }, 'No rule of this class looked at it before another had it. This command tells more:'),
-                                el('code', { class: 'statement' }, `cluxel explain MAP ${this.object.id.slice(0, 12)} --why-not ${name}`));
+                                el('code', { class: 'statement' }, `cluxel explain MAP ${this.object.id.slice(0, 12)} --why-not ${/^\w+$/.test(name) ? name : `'${name}'`}`));
   }
 
   private async askService(name: string): Promise<void> {
