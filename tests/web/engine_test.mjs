@@ -94,6 +94,7 @@ test('names that the page does not have are told with the answer', async () => {
   assert.match(await told('SELECT * { ?s clx:heigth ?o }'), /^0 rows · .*\nThe page has no clx:heigth\. Did you mean clx:height\?$/);
   assert.match(await told(`SELECT (COUNT(*) AS ?n) FROM <${GRAPH}nix> { ?s ?p ?o }`), /\nThe page has no graph https:\/\/.*\/nix\.$/);
   assert.match(await told(`ASK { GRAPH <${GRAPH}history> { ?s ?p ?o } }`), /\nThe graph of the history is not in the page: cluxel query has it\.$/);
+  assert.match(await told('SELECT * { ?o a clx:Tree FILTER(?radius > 1) }'), /\n\?radius has no value: no pattern binds it\.$/);
   for (const right of ['SELECT * { ?o a clx:Tree ; clx:height ?h } LIMIT 3', `ASK { GRAPH <${GRAPH}inferred> { ?s ?p ?o } }`,
                        'SELECT * { ?o a clx:Tree FILTER(xsd:integer(1.0) = 1) } LIMIT 1'])
     assert.match(await told(right), /ms$/, right);

@@ -2,6 +2,7 @@
 // The names that the page reads out of a query. This needs no browser.
 import assert from 'node:assert/strict';
 import { createRequire } from 'node:module';
+import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { before, test } from 'node:test';
 
@@ -31,7 +32,18 @@ test('comments, texts, functions, datatypes, blank nodes, relative IRIs and temp
                       'CONSTRUCT { ?s a clx:Mine { } } WHERE { ?s ?p ?o }'])
     assert.deepEqual(told(text), [], text);
   assert.deepEqual(told('CONSTRUCT { ?s a clx:Mine } WHERE { ?s a clx:Tree }'), ['class clx:Tree']);
+  assert.deepEqual(told('# clx:Not\nASK { ?s a clx:Tree # clx:Not\n }'), ['class clx:Tree']);
   assert.deepEqual(told('CONSTRUCT WHERE { ?s a clx:Tree }'), ['class clx:Tree']);
+});
+
+test('variables that stand in expressions alone have no value', () => {
+  const question = readFileSync(join(process.env.CLUXEL_SOURCE, 'queries/near_point.rq'), 'utf8');
+  assert.deepEqual(names.unboundIn(question), ['x', 'y', 'radius']);
+  assert.deepEqual(names.unboundIn('SELECT (SUM(?o + ?n) AS ?sum) { ?s ?p ?o } HAVING(?sum > 1)'), ['n']);
+  assert.deepEqual(names.unboundIn('ASK { ?s ?p ?o FILTER regex(?t, "a") FILTER(EXISTS { ?s ?q ?r } && ?r > ?o) }'), ['t']);
+  for (const text of ['ASK { VALUES (?x ?y) { (1 2) } FILTER(?x < ?y) }', 'ASK { ?s clx:p (?a ?b) FILTER(?a < ?b) }', 'ASK { BIND(1 AS ?x) FILTER(?x > 0) }',
+                      'ASK { FILTER(!BOUND(?x) && COALESCE(?y, 1) = 1) }', 'SELECT ?c (COUNT(?s) AS ?n) { ?s a ?c } GROUP BY ?c ORDER BY DESC(?n)'])
+    assert.deepEqual(names.unboundIn(text), [], text);
 });
 
 test('known prefixes that a query does not declare are declared for it', () => {

@@ -161,15 +161,16 @@ export class AskPanel {
     queueMicrotask(() => this.status.classList.add('fault'));
   }
 
-  /** Warnings about names that are not in the page. */
-  private warningsOf({ unknown }: Answer): string[] {
+  /** Warnings about names that are not in the page, and variables without a value. */
+  private warningsOf({ unknown, unbound }: Answer): string[] {
     const { classes, values } = this.model;
     const known = [...classes.keys(), ...values.properties.map((property) => property.iri)].map(shortened);
+    const valueless = unbound.map((name) => `?${name} has no value: no pattern binds it.`);
     return unknown.map(({ what, iri }) => {
       if (iri === HISTORY) return 'The graph of the history is not in the page: cluxel query has it.';
       const name = shortened(iri), near = what === 'graph' ? undefined : nearest(name, known);
       return `The page has no ${what === 'name' ? '' : `${what} `}${name}.${near ? ` Did you mean ${near}?` : ''}`;
-    });
+    }).concat(valueless);
   }
 
   private show(answer: Answer, question: Question | undefined, places: Map<string, Place>): void {

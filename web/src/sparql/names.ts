@@ -16,8 +16,9 @@ const KNOWN: Record<string, string> = {
 };
 
 const TOKEN = new RegExp([
-  '(?<skipped>#.*|_:[\\p{L}\\p{N}_.-]+|[?$][\\p{L}\\p{N}_]+|"""(?:[^"\\\\]|\\\\.|"(?!""))*"""|' +
+  '(?<skipped>#[^\\n]*|_:[\\p{L}\\p{N}_.-]+|"""(?:[^"\\\\]|\\\\.|"(?!""))*"""|' +
     "'''(?:[^'\\\\]|\\\\.|'(?!''))*'''|\"(?:[^\"\\\\\\n]|\\\\.)*\"|'(?:[^'\\\\\\n]|\\\\.)*')",
+  '[?$](?<variable>[\\p{L}\\p{N}_]+)',
   '<(?<iri>[^\\s<>"{}|\\\\^`]*)>',
   '(?<prefix>(?:\\p{L}(?:[\\p{L}\\p{N}_.-]*[\\p{L}\\p{N}_-])?)?):(?<local>(?:[\\p{L}\\p{N}_:%]|[.-](?=[\\p{L}\\p{N}_:%.-]))*)',
   '(?<word>[\\p{L}\\p{N}_]+)',
@@ -25,7 +26,7 @@ const TOKEN = new RegExp([
 ].join('|'), 'gsu');
 
 export interface UnknownName { what: 'graph' | 'class' | 'name'; iri: string }
-interface Token { at: number; sign?: string; word?: string; iri?: string; prefix?: string; local?: string }
+interface Token { at: number; sign?: string; word?: string; variable?: string; iri?: string; prefix?: string; local?: string }
 
 function tokensOf(text: string): Token[] {
   return [...text.matchAll(TOKEN)].filter((match) => match.groups!.skipped === undefined)
@@ -88,6 +89,24 @@ export function namesIn(text: string): UnknownName[] {
     if (!found.has(iri)) found.set(iri, { what, iri });
   });
   return [...found.values()];
+}
+
+/**
+ * Variables that stand in expressions alone, so that they have no value, as the parameters of a shipped question that is
+ * asked as it stands. Where an expression cannot be told from a pattern, a variable counts as bound.
+ */
+export function unboundIn(text: string): string[] {
+  const { rest: tokens } = prologueOf(tokensOf(text)), opened: string[] = [], bound = new Set<string>(), used = new Set<string>();
+  tokens.forEach(({ sign, variable }, i) => {
+    const before = tokens[i - 1], top = opened[opened.length - 1] ?? '{';
+    if (sign === '{') opened.push('{');
+    else if (sign === '(') opened.push(before?.word?.toUpperCase() ?? (top === '{' ? '{' : 'EXPRESSION'));
+    else if (sign === ')' || sign === '}') opened.pop();
+    if (variable === undefined) return;
+    if (top === '{' || top === 'VALUES' || before?.word?.toUpperCase() === 'AS') bound.add(variable);
+    else if (top !== 'BOUND' && top !== 'COALESCE') used.add(variable);
+  });
+  return [...used].filter((name) => !bound.has(name));
 }
 
 /** The candidate that differs least; at most every third letter may differ. */

@@ -5,7 +5,7 @@ import init, { Store } from 'oxigraph/web.js';
 import type { Answer, Ask, FromWorker, Load, RdfTerm, ToWorker } from './answers';
 import { namesDataset } from './dataset';
 import { timesIn } from './lexical_times';
-import { missingPrefixes, namesIn, undeclaredPrefix, type UnknownName } from './names';
+import { missingPrefixes, namesIn, unboundIn, undeclaredPrefix, type UnknownName } from './names';
 import { nquadsOf } from './packed_quads';
 
 interface EngineTerm {
@@ -83,7 +83,7 @@ function answerOf({ map, blank, times }: Stores, written: string): Answer {
   const isUnion = !namesDataset(text, (changed) => isReadable(blank, changed));
   const result = map.query(text, { use_default_graph_as_union: isUnion }) as unknown;
   const milliseconds = performance.now() - start, unknown = unknownNames(map, written);
-  const timed = (answer: object) => ({ ...answer, milliseconds, unknown }) as Answer;
+  const timed = (answer: object) => ({ ...answer, milliseconds, unknown, unbound: unboundIn(written) }) as Answer;
   if (typeof result === 'boolean') return timed({ form: 'truth', value: result });
   if (makesGraph(blank, text)) {
     const quads = result as { subject: EngineTerm; predicate: EngineTerm; object: EngineTerm }[];
