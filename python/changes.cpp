@@ -6,6 +6,7 @@
 #include <map>
 #include <variant>
 
+#include "gil.hpp"
 #include "python_calls.hpp"
 
 namespace cluxel::python {
@@ -42,7 +43,7 @@ const char* nameOf(ChangeKind kind) {
 template <typename Change>
 auto changed(py::object progress, py::object note, const Change& change) {
   PythonSink sink(std::move(progress), std::move(note));
-  const py::gil_scoped_release release;
+  const ReleasedGil released;
   return change(sink);
 }
 
@@ -79,8 +80,13 @@ MapChanges repose(Map& map, const std::map<std::string, Matrix>& poses, unsigned
 Map merge(const std::vector<std::filesystem::path>& maps, const std::filesystem::path& target, unsigned threads,
           std::optional<std::uint64_t> batch_points, py::object progress, py::object note) {
   const ChangeOptions options{{}, threads, batch_points, false};
-  return changed(std::move(progress), std::move(note),
-                 [&](ProgressSink& sink) { return Map::merge(maps, target, options, sink); });
+  try {
+    return changed(std::move(progress), std::move(note),
+                   [&](ProgressSink& sink) { return Map::merge(maps, target, options, sink); });
+  } catch (const Error& error) {
+    if (error.remedy() != Remedy::ReplaceMap) throw;  // build() takes force, merge() does not
+    throw Error(error.kind(), std::string(error.what()) + "; merge into another file, or remove this one first");
+  }
 }
 
 void bindValues(py::module_& module) {

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Errors of the library as Python exceptions: one class for each ErrorKind, with place and remedy.
+#include <pybind11/stl.h>
+
 #include <array>
 
 #include "bindings.hpp"
@@ -38,7 +40,8 @@ struct PythonClasses {
 };
 PythonClasses python_classes;
 
-/// What a Python program passes to help itself; empty where no argument of this module does.
+/// What a Python program passes to help itself, or the command that does what no argument of this module does; empty
+/// where a Python program meets no such error.
 const char* remedyText(Remedy remedy) {
   switch (remedy) {
     case Remedy::ReplaceMap:
@@ -49,6 +52,21 @@ const char* remedyText(Remedy remedy) {
       return "pass poses=FILE to name the poses";
     case Remedy::NameValue:
       return "pass bindings={NAME: VALUE} to give a variable its value";
+    case Remedy::NameService:
+      return "this module asks no other store; 'cluxel query --service IRI=FILE' does";
+    case Remedy::NameLoadFile:
+      return "this module loads no file; 'cluxel update --load IRI=FILE' does";
+    case Remedy::ChooseInputs:
+      return "this module merges maps of the same inputs only; 'cluxel merge --use MAP' names that map";
+    case Remedy::NameTransform:
+      return "this module merges maps in one frame only; 'cluxel merge --transform FILE' names the matrix from the "
+             "second map to the first";
+    case Remedy::MoveScans:
+      return "Map.repose() gives scans of a map other poses";
+    case Remedy::MergeMaps:
+      return "cluxel.merge() makes one map of several";
+    case Remedy::ListClouds:
+      return "Map.clouds() lists the scans of a map";
     default:
       return "";
   }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <variant>
 
+#include "gil.hpp"
 #include "python_calls.hpp"
 
 namespace cluxel::python {
@@ -16,7 +17,7 @@ namespace fs = std::filesystem;
 
 using Paths = std::vector<fs::path>;
 using PathOrPaths = std::variant<fs::path, Paths>;
-using Release = py::call_guard<py::gil_scoped_release>;
+using Release = py::call_guard<ReleasedGil>;
 
 using OptionalPaths = std::optional<PathOrPaths>;
 
@@ -49,7 +50,7 @@ Map build(const PathOrPaths& scans, const fs::path& file, const std::optional<fs
   options.refine_poses = refine_poses;
   PythonSink sink(std::move(progress), std::move(note));
   const Paths inputs = listOf(scans);
-  const py::gil_scoped_release release;
+  const ReleasedGil released;
   return Map::build(inputs, file, options, sink);
 }
 
@@ -70,9 +71,10 @@ Answer query(const Map& map, const std::string& text, const py::dict& bindings, 
   options.max_memory_bytes = max_memory_bytes;
   options.source_name = source_name;
   options.strict_default_graph = strict_default_graph;
-  for (const auto& [name, value] : bindings) options.bindings.emplace(name.cast<std::string>(), termOf(value));
+  for (const auto& [name, value] : bindings)
+    options.bindings.emplace(textOf(name, "the name of a variable"), termOf(value));
   options.poll = SignalPoll();
-  const py::gil_scoped_release release;
+  const ReleasedGil released;
   return map.query(text, options);
 }
 
@@ -85,20 +87,24 @@ py::tuple update(Map& map, const std::string& text, std::optional<double> deadli
   options.poll = SignalPoll();
   UpdateCounts counts;
   {
-    const py::gil_scoped_release release;
+    const ReleasedGil released;
     counts = map.update(text, options);
   }
   return py::module_::import("cluxel").attr("UpdateCounts")(counts.inserted, counts.deleted);
 }
 
-/// What explain() takes: an object, its number, or a name.
+/// What explain() and points() take: an object, its number, or a name.
 using Named = std::variant<Object, std::size_t, std::string>;
 
+std::string nameOf(const Named& named) {
+  if (const auto* object = std::get_if<Object>(&named)) return object->iri;
+  if (const auto* number = std::get_if<std::size_t>(&named)) return "#" + std::to_string(*number);
+  return std::get<std::string>(named);
+}
+
 Explanation explanationOf(const Map& map, const Named& named) {
-  const py::gil_scoped_release release;
-  if (const auto* object = std::get_if<Object>(&named)) return map.explain(object->iri);
-  if (const auto* number = std::get_if<std::size_t>(&named)) return map.explain("#" + std::to_string(*number));
-  return map.explain(std::get<std::string>(named));
+  const ReleasedGil released;
+  return map.explain(nameOf(named));
 }
 
 py::dict explain(const Map& map, const Named& named) {
@@ -106,13 +112,10 @@ py::dict explain(const Map& map, const Named& named) {
   return py::module_::import("json").attr("loads")(explanation.json);
 }
 
-PointCloud pointsOf(const Map& map, const std::variant<Object, Cloud, std::string>& owner) {
-  const py::gil_scoped_release release;
-  if (const auto* object = std::get_if<Object>(&owner)) return map.points(*object);
+PointCloud pointsOf(const Map& map, const std::variant<Cloud, Named>& owner) {
+  const ReleasedGil released;
   if (const auto* cloud = std::get_if<Cloud>(&owner)) return map.points(*cloud);
-  Object named;
-  named.iri = std::get<std::string>(owner);
-  return map.points(named);
+  return map.points(nameOf(std::get<Named>(owner)));
 }
 
 std::vector<Object> objectsOf(const Map& map, const std::optional<std::string>& class_name) {
@@ -172,7 +175,7 @@ Map openMap(const std::filesystem::path& file, const py::object& note) {
   KeptNotes kept;
   std::optional<Map> map;
   {
-    const py::gil_scoped_release release;
+    const ReleasedGil released;
     map.emplace(Map::open(file, kept));
   }
   const py::object tell = note.is_none() ? py::module_::import("warnings").attr("warn") : note;
@@ -215,21 +218,22 @@ void bindMaps(py::module_& module) {
       .def("objects", &objectsOf, py::arg("class_name") = py::none(), Release(),
            "The objects that the rules found, sorted by IRI: all, or those of a class and its subclasses, named "
            "'Tree',\n"
-           "'clx:Tree' or by IRI. Raises NotFoundError when the ontology has no such class.")
+           "'clx:Tree' or by IRI. Raises NotFoundError when the ontology has no such class, InvalidArgumentError for "
+           "one\n"
+           "whose things are no objects, such as ways and parts.")
       .def("clouds", &Map::clouds, Release(), "The scans, sorted by id: list of Cloud.")
       .def(
           "points",
-          [](const Map& map, const std::variant<Object, Cloud, std::string>& owner) {
-            return arraysOf(pointsOf(map, owner));
-          },
+          [](const Map& map, const std::variant<Cloud, Named>& owner) { return arraysOf(pointsOf(map, owner)); },
           py::arg("owner"),
-          "The points of an Object, of an object named by its IRI, or of a Cloud, as Points. Those of a cloud come in\n"
-          "the order in which they were measured, those of an object scan by scan.")
-      .def("explain", &explain, py::arg("name"),
-           "Why an object or primitive is what it is, as a dict: measured values, thresholds and margins along the\n"
-           "decisions, and why it is nothing else. name: Object, its number, an IRI, 'object/…' or 'primitive/…', or "
-           "at\n"
-           "least four leading digits of its hash. Applies the map's rules again: cost in the size of the map.")
+          "The points of an object, which is named as for explain(), or of a Cloud, as Points. Those of a cloud come\n"
+          "in the order in which they were measured, those of an object scan by scan.")
+      .def(
+          "explain", &explain, py::arg("name"),
+          "Why an object or primitive is what it is, as a dict: measured values, thresholds and margins along the\n"
+          "decisions, and why it is nothing else. name: Object, its number, an IRI, 'map:object/…', 'object/…' or\n"
+          "'primitive/…', or at least four leading digits of its hash. A former name means the object that it is now.\n"
+          "Applies the map's rules again: cost in the size of the map.")
       .def(
           "explain_text", [](const Map& map, const Named& named) { return explanationOf(map, named).text; },
           py::arg("name"), "The same as explain(name), in English prose.")

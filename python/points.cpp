@@ -11,6 +11,7 @@ namespace {
 static_assert(static_cast<std::int32_t>(kNoObject) == -1);
 
 py::array_t<double> xyzOf(const PointCloud& cloud) {
+  requireNumpy();
   py::array_t<double> xyz({cloud.size(), std::size_t{3}});
   double* out = xyz.mutable_data();
   for (std::size_t i = 0; i < cloud.size(); ++i) {
@@ -38,6 +39,7 @@ void bindClouds(py::module_& module) {
       .def_property_readonly(
           "T_map_sensor",
           [](const Cloud& cloud) {
+            requireNumpy();
             return py::array_t<double>({4, 4}, cloud.T_map_sensor.data());
           },
           "Pose of the sensor: float64 array of shape (4, 4); T_map_sensor @ [x, y, z, 1] is in the map frame [m].")

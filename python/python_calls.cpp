@@ -2,6 +2,8 @@
 // Takes the GIL for each call, and keeps what Python raised.
 #include "python_calls.hpp"
 
+#include "gil.hpp"
+
 namespace cluxel::python {
 
 namespace {
@@ -15,7 +17,7 @@ void raiseSignals() {
 template <typename Call>
 void PythonSink::guarded(const Call& call) {
   if (failure_) std::rethrow_exception(failure_);
-  const py::gil_scoped_acquire gil;
+  const HeldGil gil;
   try {
     raiseSignals();
     call();
@@ -41,7 +43,7 @@ void SignalPoll::operator()() {
   const auto now = std::chrono::steady_clock::now();
   if (now < next_) return;
   next_ = now + std::chrono::milliseconds(50);
-  const py::gil_scoped_acquire gil;
+  const HeldGil gil;
   raiseSignals();
 }
 

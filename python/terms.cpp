@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // RDF terms in Python, and Python values as terms.
 #include <pybind11/operators.h>
+#include <pybind11/stl.h>
 
 #include <optional>
 #include <set>
@@ -25,11 +26,33 @@ const char* termKindName(const Term& term) {
   }
 }
 
+/// As Turtle and SPARQL have it: letters, then groups of letters and digits.
+bool isLanguageTag(std::string_view text) {
+  const auto isLetter = [](char c) { return ('a' <= c && c <= 'z') || ('A' <= c && c <= 'Z'); };
+  const auto isDigit = [](char c) { return '0' <= c && c <= '9'; };
+  bool is_first = true, is_filled = false;
+  for (const char c : text) {
+    if (c == '-') {
+      if (!is_filled) return false;
+      is_first = is_filled = false;
+    } else if (isLetter(c) || (isDigit(c) && !is_first)) {
+      is_filled = true;
+    } else {
+      return false;
+    }
+  }
+  return is_filled;
+}
+
 Term literalOf(const std::string& text, const std::optional<std::string>& datatype,
                const std::optional<std::string>& language) {
   if (datatype && language)
     throw Error(ErrorKind::InvalidArgument, "a literal has a datatype or a language, not both: leave one out");
   if (datatype) return Term::literal(text, *datatype);
+  if (language && !isLanguageTag(*language))
+    throw Error(ErrorKind::InvalidArgument, "'" + *language +
+                                                "' is no language tag: write letters and digits in groups that are "
+                                                "joined by '-', such as 'en' or 'de-CH'");
   return language ? Term::langLiteral(text, *language) : Term::literal(text);
 }
 
@@ -74,6 +97,17 @@ bool isNumberText(const std::string& text, const std::string& datatype) {
   return text.find_first_not_of("0123456789+-.") == std::string::npos;
 }
 
+std::string textOf(const py::handle& value, const std::string& what) {
+  if (!py::isinstance<py::str>(value))
+    throw py::type_error(what + " is a str, not " +
+                         py::str(py::type::handle_of(value).attr("__name__")).cast<std::string>());
+  Py_ssize_t size = 0;
+  const char* const text = PyUnicode_AsUTF8AndSize(value.ptr(), &size);
+  if (text != nullptr) return {text, static_cast<std::size_t>(size)};
+  PyErr_Clear();
+  throw py::type_error(what + " is a str that cannot be written as UTF-8: " + py::repr(value).cast<std::string>());
+}
+
 /// A number of NumPy as Python has it; other values as they are.
 py::object withoutNumpy(const py::handle& value) {
   const py::object generic = py::module_::import("numpy").attr("generic");
@@ -87,7 +121,7 @@ Term termOf(const py::handle& given) {
   if (py::isinstance<py::int_>(value))
     return Term::literal(py::str(value).cast<std::string>(), std::string(kXsd) + "integer");
   if (py::isinstance<py::float_>(value)) return Term::real(value.cast<double>());
-  if (py::isinstance<py::str>(value)) return Term::literal(value.cast<std::string>());
+  if (py::isinstance<py::str>(value)) return Term::literal(textOf(value, "a value"));
   throw Error(ErrorKind::InvalidArgument, "a value is Term, str, bool, int or float (also of NumPy), not " +
                                               py::str(py::type::handle_of(given).attr("__name__")).cast<std::string>() +
                                               "; cluxel.Term.iri(...) makes an IRI");

@@ -149,15 +149,15 @@ class CLUXEL_API Map {
   static Map merge(const std::vector<std::filesystem::path>& maps, const std::filesystem::path& target,
                    const ChangeOptions& options, ProgressSink& sink);
 
-  /// Explains an object or a primitive named by its IRI, by "object/…" or "primitive/…", or by at least four leading
-  /// digits of its hash. Applies the map's rules again to the tiles around it. Reads the whole map only when these
-  /// tiles do not reproduce the stored decision.
+  /// Explains an object or a primitive named by its IRI (also as "map:object/…"), by "object/…" or "primitive/…", by at
+  /// least four leading digits of its hash, or an object by its number ("#17"). Applies the map's rules again to the
+  /// tiles around it. Reads the whole map only when these tiles do not reproduce the stored decision.
   Explanation explain(const std::string& name) const;
 
   /// All objects that the rules found, sorted by IRI. What SPARQL rules derive is answered by query() only.
   std::vector<Object> objects() const;
   /// Those of a class or its subclasses, named "Tree", "clx:Tree" or by IRI. Numbers are those of objects(). NotFound
-  /// when the ontology has no such class.
+  /// when the ontology has no such class; InvalidArgument for a class whose things are no objects, such as ways.
   std::vector<Object> objects(std::string_view class_name) const;
 
   /// The scans, sorted by id.
@@ -166,6 +166,8 @@ class CLUXEL_API Map {
   PointCloud points(const Cloud& cloud) const;
   /// The points of an object in all scans, scan by scan. Cost: in the scans whose bounds meet the object's.
   PointCloud points(const Object& object) const;
+  /// The same of an object named as for explain(); a former name means the object that it is now.
+  PointCloud points(const std::string& object) const;
 
  private:
   struct Impl;

@@ -289,6 +289,10 @@ PointCloud Map::points(const Cloud& cloud) const {
 }
 
 PointCloud Map::points(const Object& object) const {
+  return points(object.iri);
+}
+
+PointCloud Map::points(const std::string& object) const {
   return impl_->reading([&](const mapping::MapReader& map) { return pointsOf(map, object); });
 }
 

@@ -2,7 +2,6 @@
 // Points of scans and objects in the map frame.
 #include "api/point_query.hpp"
 
-#include <algorithm>
 #include <functional>
 #include <optional>
 
@@ -10,6 +9,7 @@
 #include "mapping/facts/object_geometry.hpp"
 #include "rdf/map_iris.hpp"
 #include "scan/truth/primitive_label.hpp"
+#include "tasks/thing_names.hpp"
 
 namespace cluxel {
 
@@ -63,15 +63,6 @@ bool meets(const mapping::Cloud& cloud, const mapping::ObjectGeometry& object) {
   return (cloud.min.array() <= object.max.array()).all() && (object.min.array() <= cloud.max.array()).all();
 }
 
-std::uint32_t numberOf(const mapping::MapReader& map, const Object& object) {
-  const auto& all = map.objects();
-  const auto place = std::find_if(all.begin(), all.end(), [&](const rules::SemanticObject& candidate) {
-    return rdf::iriOfObject(candidate.id) == object.iri;
-  });
-  if (place == all.end()) throw Error(ErrorKind::NotFound, "the map has no object <" + object.iri + "> (any more)");
-  return static_cast<std::uint32_t>(place - all.begin());
-}
-
 }  // namespace
 
 std::vector<Cloud> cloudsOf(const mapping::MapReader& map) {
@@ -91,8 +82,8 @@ PointCloud pointsOf(const mapping::MapReader& map, const Cloud& cloud) {
   throw Error(ErrorKind::NotFound, "the map has no scan '" + cloud.id + "' (any more)");
 }
 
-PointCloud pointsOf(const mapping::MapReader& map, const Object& object) {
-  const std::uint32_t number = numberOf(map, object);
+PointCloud pointsOf(const mapping::MapReader& map, const std::string& object) {
+  const auto number = static_cast<std::uint32_t>(tasks::objectNamed(map, object));
   const mapping::ObjectGeometry geometry =
       mapping::geometryOf(map.scene().cluxels, mapping::cluxelsOf(map.objects()[number]));
   PointCloud points;

@@ -2,6 +2,8 @@
 // Points of a map as values.
 #pragma once
 
+#include <string>
+
 #include "cluxel/point_cloud.hpp"
 #include "mapping/map_reader.hpp"
 
@@ -10,7 +12,7 @@ namespace cluxel {
 std::vector<Cloud> cloudsOf(const mapping::MapReader& map);
 /// Throws Error (NotFound) when the map has no scan of that id.
 PointCloud pointsOf(const mapping::MapReader& map, const Cloud& cloud);
-/// Throws Error (NotFound) when the map has no object of that IRI.
-PointCloud pointsOf(const mapping::MapReader& map, const Object& object);
+/// `object` as for tasks::objectNamed(). Throws Error (NotFound) as that does.
+PointCloud pointsOf(const mapping::MapReader& map, const std::string& object);
 
 }  // namespace cluxel

@@ -3,6 +3,7 @@
 import ast
 import inspect
 import pickle
+import shutil
 
 import pytest
 
@@ -69,6 +70,37 @@ def test_empty_paths_and_wrong_types_are_errors(campus, tmp_path):
         campus.map.query("ASK {}", max_rows="many")
 
 
+@pytest.mark.parametrize("bindings, why", [({3: 1}, "the name of a variable is a str, not int"),
+                                           ({"\ud800": 1}, "the name of a variable is a str that cannot be written"),
+                                           ({"x": "\ud800"}, "a value is a str that cannot be written")])
+def test_bindings_of_wrong_types_are_errors_of_type(campus_map, bindings, why):
+    with pytest.raises(TypeError, match=why):
+        campus_map.query("ASK { ?s ?p ?x }", bindings=bindings)
+
+
+def test_hints_can_be_followed_in_python(campus, copied_map, tmp_path):
+    for call, command in ((lambda: copied_map.update("LOAD <http://e/f>"), "cluxel update --load"),
+                          (lambda: copied_map.query("ASK { SERVICE <http://e/s> { ?s ?p ?o } }"), "cluxel query --service")):
+        with pytest.raises(cluxel.CluxelError) as raised:
+            call()
+        assert command in raised.value.remedy and raised.value.remedy in str(raised.value)
+    other = tmp_path / "other.ttl"
+    other.write_text("@prefix owl: <http://www.w3.org/2002/07/owl#> .\n<http://e/Thing> a owl:Class .\n")
+    ontology = [*sorted((SOURCE / "ontology").glob("*.ttl")), other]
+    campus.build(tmp_path / "other.clx", ontology=ontology)
+    with pytest.raises(cluxel.InvalidArgumentError) as raised:
+        cluxel.merge([campus.file, tmp_path / "other.clx"], tmp_path / "both.clx")
+    assert "cluxel merge --use" in raised.value.remedy
+
+
+def test_a_merge_names_no_argument_that_it_does_not_take(campus, copied_map, tmp_path):
+    copied_map.retract([copied_map.clouds()[0].id])
+    twin = shutil.copy(campus.file, tmp_path / "twin.clx")
+    with pytest.raises(cluxel.InvalidArgumentError, match="exists already; merge into another file") as raised:
+        cluxel.merge([campus.file, twin], copied_map.file)
+    assert raised.value.remedy is None
+
+
 def test_what_is_not_known_is_none(tmp_path):
     with pytest.raises(cluxel.StoreUnavailableError, match="there is no such file") as raised:
         cluxel.open(tmp_path / "absent.clx")
@@ -90,7 +122,7 @@ def test_errors_can_be_pickled(campus_map):
 
 
 def test_wrong_types_are_refused(campus_map):
-    for call in (lambda: campus_map.query(7), lambda: campus_map.points(7), lambda: cluxel.open(7), lambda: cluxel.Map()):
+    for call in (lambda: campus_map.query(7), lambda: campus_map.points(7.5), lambda: cluxel.open(7), lambda: cluxel.Map()):
         with pytest.raises(TypeError):
             call()
 

@@ -51,6 +51,21 @@ def test_points_of_an_object_are_those_of_the_scans_that_belong_to_it(campus_map
     np.testing.assert_array_equal(campus_map.points(tree.iri).xyz, points.xyz)
 
 
+def test_points_are_named_as_explanations_are(copied_map):
+    tree = copied_map.objects("Tree")[0]
+    digits = tree.iri.rsplit("/", 1)[1]
+    expected = copied_map.points(tree).xyz
+    for name in (tree.number, f"#{tree.number}", tree.iri, f"<{tree.iri}>", f"map:object/{digits}", f"object/{digits}",
+                 digits):
+        assert np.array_equal(copied_map.points(name).xyz, expected), name
+    for name in ("#100000", "https://w3id.org/cluxel/map/object/" + 32 * "0"):
+        with pytest.raises(cluxel.NotFoundError):
+            copied_map.points(name)
+    run("state", copied_map.file, "--object", tree.iri, "--is", "StreetLamp")  # which gives it another name
+    assert tree.iri not in {thing.iri for thing in copied_map.objects()}
+    assert np.array_equal(copied_map.points(tree.iri).xyz, expected) and len(copied_map.points(tree)) == len(expected)
+
+
 def test_points_of_a_scan_are_whole_and_labelled(campus_map):
     assert cluxel.LABELS == ("horizontal_plane", "vertical_plane", "column", "small_structure", "scatter")
     clouds = campus_map.clouds()

@@ -162,6 +162,13 @@ def test_terms_are_values():
         cluxel.Term.literal("x", datatype="http://example.org/t", language="en")
 
 
+@pytest.mark.parametrize("tag", ["d e", "", "de-", "-de", "1e", "de_CH", "dé"])
+def test_language_tags_are_checked(tag):
+    with pytest.raises(cluxel.InvalidArgumentError, match="is no language tag"):
+        cluxel.Term.literal("a", language=tag)
+    assert cluxel.Term.literal("a", language="de-CH-1996").n3() == '"a"@de-ch-1996'
+
+
 def test_limits_end_a_query(campus_map):
     pairs = "SELECT ?a ?c { ?a ?p ?b . ?c ?q ?d }"
     for limit in ({"deadline_s": 0.005}, {"max_rows": 10}, {"max_memory_bytes": 1 << 20}):

@@ -170,7 +170,7 @@ HttpResponse answerPoints(ServedMap& map, const ResourceRequest& asked, const st
   requireKnown(asked.target.parameters, {});
   if (!chosen) throw Refusal(406, "points can be had as application/json or text/csv");
   PointCloud points;
-  map.withReader([&](const mapping::MapReader& reader) { points = pointsOf(reader, currentObject(reader, id)); });
+  map.withReader([&](const mapping::MapReader& reader) { points = pointsOf(reader, currentObject(reader, id).iri); });
   HttpResponse response{200, "text/csv; charset=utf-8", {}, {}};
   if (*chosen == 0)
     response = jsonResponse(pointsJson(points), asked.limits);
