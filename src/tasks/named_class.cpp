@@ -3,9 +3,6 @@
 // in this order.
 #include "tasks/named_class.hpp"
 
-#include <unicode/bytestream.h>
-#include <unicode/casemap.h>
-
 #include <algorithm>
 #include <vector>
 
@@ -22,18 +19,6 @@
 namespace cluxel::tasks {
 
 namespace {
-
-/// Without case in any script ("Straße" and "STRASSE" are one word), blanks and what joins words.
-std::string plainWords(std::string_view text) {
-  std::string plain;
-  icu::StringByteSink<std::string> sink(&plain);
-  UErrorCode error = U_ZERO_ERROR;
-  icu::CaseMap::utf8Fold(0, {text.data(), static_cast<std::int32_t>(text.size())}, sink, nullptr, error);
-  if (U_FAILURE(error)) plain = lowerCase(text);
-  plain.erase(std::remove_if(plain.begin(), plain.end(), [](char c) { return c == ' ' || c == '-' || c == '_'; }),
-              plain.end());
-  return plain;
-}
 
 class ClassLookup {
  public:
@@ -74,19 +59,21 @@ class ClassLookup {
   /// By a label in any language as it is written, else by one whatever its case, else by the local name whatever its
   /// case, to which the class of the clx namespace has the first right.
   std::vector<std::string> labelled(const std::string& name) const {
-    const std::string words = plainWords(name);
+    const std::string words = rdf::plainWords(name), composed = rdf::composedWords(name);
     if (words.empty()) return {};
     const auto withLabel = [&](const auto& is_meant) {
       return classesWhere([&](const rdf::OntologyClass& known) {
         return std::any_of(known.labels.begin(), known.labels.end(),
-                           [&](const auto& label) { return is_meant(label.second); });
+                           [&](const rdf::ClassLabel& label) { return is_meant(label); });
       });
     };
-    if (auto found = withLabel([&](const std::string& label) { return label == name; }); !found.empty()) return found;
-    if (auto found = withLabel([&](const std::string& label) { return plainWords(label) == words; }); !found.empty())
+    if (auto found = withLabel([&](const auto& label) { return rdf::composedWords(label.text) == composed; });
+        !found.empty())
       return found;
-    std::vector<std::string> found =
-        classesWhere([&](const rdf::OntologyClass& known) { return plainWords(rdf::localName(known.iri)) == words; });
+    if (auto found = withLabel([&](const auto& label) { return rdf::isCalled(label, name); }); !found.empty())
+      return found;
+    std::vector<std::string> found = classesWhere(
+        [&](const rdf::OntologyClass& known) { return rdf::plainWords(rdf::localName(known.iri)) == words; });
     const auto own = [](const std::string& iri) { return iri.starts_with(rdf::vocabulary::kClx); };
     if (std::any_of(found.begin(), found.end(), own))
       std::erase_if(found, [&](const std::string& iri) { return !own(iri); });

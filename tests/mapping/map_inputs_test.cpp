@@ -96,6 +96,22 @@ TEST(MapInputs, WithAxiomsFromWhichNothingIsInferredAreNoted) {
             "rdfs:subClassOf for each class that is below another");
 }
 
+TEST(MapInputs, WithLabelsOfSeveralClassesAreNoted) {
+  Notes notes;
+  std::vector<NamedText> ontology = shippedInputs().ontology;
+  noteSharedLabels(ontology, notes);
+  EXPECT_TRUE(notes.texts.empty()) << notes.texts.front();
+  ontology.push_back(
+      {"own.ttl",
+       "@prefix owl: <http://www.w3.org/2002/07/owl#> . @prefix my: <http://x/> .\n"
+       "@prefix rdfs: <http://www.w3.org/2000/01/rdf-schema#> .\n"
+       "my:A a owl:Class ; rdfs:label \"Doppelt\"@en . my:B a owl:Class ; rdfs:label \"Doppelt\"@de .\n"});
+  noteSharedLabels(ontology, notes);
+  ASSERT_EQ(notes.texts.size(), 1U);
+  EXPECT_NE(notes.texts[0].find("warning: the label 'Doppelt' is that of 2 classes, <http://x/A>, <http://x/B>"),
+            std::string::npos);
+}
+
 TEST(MapInputs, WithNamesThatTheOntologyLacksAreNoted) {
   Notes notes;
   MapInputs inputs = shippedInputs();

@@ -17,11 +17,12 @@ using testing::HasSubstr;
 
 const std::string kTown = "http://t.example/town#", kStore = "http://t.example/store/";
 
-rdf::OntologyView viewOf(const std::vector<std::pair<std::string, std::map<std::string, std::string>>>& classes) {
+rdf::OntologyView viewOf(const std::vector<std::pair<std::string, std::multimap<std::string, std::string>>>& classes) {
   rdf::OntologyView view;
   for (const auto& [iri, labels] : classes) {
     rdf::OntologyClass& known = view.classes.emplace_back();
-    known.iri = iri, known.labels = labels;
+    known.iri = iri;
+    for (const auto& [language, text] : labels) known.labels.push_back({language, rdf::LabelKind::Alternative, text});
   }
   std::sort(view.classes.begin(), view.classes.end(), [](const auto& a, const auto& b) { return a.iri < b.iri; });
   return view;
@@ -74,6 +75,13 @@ TEST(NamedClass, IsALabelWhateverTheCaseOfItsLetters) {
   for (const char* written : {"Gebäude", "gebäude", "GEBÄUDE"}) EXPECT_EQ(classNamed(view, written), clx("Building"));
   EXPECT_EQ(classNamed(view, "STRASSENSCHILD"), clx("StreetSign"));
   EXPECT_EQ(classNamed(view, "ёлКА"), kTown + "Ёлка");
+}
+
+TEST(NamedClass, IsAnyOfItsLabelsInAnyFormOfUnicode) {
+  const rdf::OntologyView view = viewOf(
+      {{clx("StreetLamp"), {{"fr", "r\u00e9verb\u00e8re"}, {"fr", "lampadaire"}, {"tr", "Sokak Lambas\u0131"}}}});
+  for (const char* written : {"re\u0301verbe\u0300re", "lampadaire", "SOKAK LAMBASI", "Sokak Lambas\u0131"})
+    EXPECT_EQ(classNamed(view, written), clx("StreetLamp")) << written;
 }
 
 TEST(NamedClass, OfTheVocabularyHasTheFirstRightToALocalName) {

@@ -114,7 +114,7 @@ ExitCode check(const RulesOptions& options, Session& session) {
   const auto sources = mapping::ontologySources(ontologyFor(options, home));
   const rdf::OntologyView ontology = rdf::ontologyViewOf(sources);
   std::vector<fs::path> trees;
-  std::vector<Diagnostic> faults;
+  std::vector<Diagnostic> faults = sharedLabels(ontology);
   for (const fs::path& file : ruleFiles(options, home)) {
     if (file.extension() != ".rq") {
       trees.push_back(file);

@@ -264,6 +264,7 @@ BuildReport built(const scan::ScanSet& scans, const MapInputs& inputs, const fs:
   noteUnknownNames(complete, sink);
   noteUnusedAxioms(complete.ontology, sink);
   const ParsedInputs parsed = parseNewInputs(complete);
+  noteSharedLabels(complete.ontology, sink);
   // A faulty statement is refused before anything is written.
   for (const Statement& statement : statementsAmong(params.statements)) {
     try {

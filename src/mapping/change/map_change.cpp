@@ -256,7 +256,10 @@ ChangeReport appliedTo(const fs::path& file, const std::function<MapInputs(MapIn
   const bool has_new_queries = inputs.sparql_rules != before.sparql_rules;
   if (has_new_queries) checkNewSparqlRules(inputs.sparql_rules);
   if (has_new_queries || inputs.ontology != before.ontology) noteUnknownNames(inputs, sink);
-  if (inputs.ontology != before.ontology) noteUnusedAxioms(inputs.ontology, sink);
+  if (inputs.ontology != before.ontology) {
+    noteUnusedAxioms(inputs.ontology, sink);
+    noteSharedLabels(inputs.ontology, sink);
+  }
   const bool has_new_rules = inputs.rules != before.rules || inputs.ontology != before.ontology;
   editor.setInputs(has_new_rules ? parseNewInputs(inputs) : parseInputs(inputs));
   rdf::WriteTransaction transaction = editor.begin();

@@ -8,6 +8,7 @@
 #include "mapping/inference/inference_graphs.hpp"
 #include "mapping/inference/sparql_rules.hpp"
 #include "rdf/io/rdf_io.hpp"
+#include "rdf/ontology/ontology.hpp"
 #include "rdf/ontology/unused_axioms.hpp"
 
 namespace cluxel::mapping {
@@ -27,6 +28,11 @@ void noteUnusedAxioms(const std::vector<NamedText>& ontology, ProgressSink& sink
               (is_of_classes ? "rdfs:subClassOf for each class that is below another"
                              : "what should follow as rdfs:subClassOf, rdfs:subPropertyOf or a SPARQL rule"));
   }
+}
+
+void noteSharedLabels(const std::vector<NamedText>& ontology, ProgressSink& sink) {
+  const auto sources = ontologySources(ontology);
+  for (const Diagnostic& warning : sharedLabels(rdf::ontologyViewOf(sources))) sink.note(format(warning));
 }
 
 void inferAnew(rdf::WriteTransaction& transaction, const std::vector<NamedText>& rules, ProgressSink& sink,

@@ -5,7 +5,6 @@
 
 #include <cstdint>
 #include <functional>
-#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -14,6 +13,7 @@
 
 #include "cluxel/error.hpp"
 #include "rdf/io/rdf_io.hpp"
+#include "rdf/ontology/class_labels.hpp"
 #include "rdf/store/quad_store.hpp"
 
 namespace cluxel::rdf {
@@ -31,16 +31,17 @@ struct UsualPlace {
 /// One class of the ontology. All names are IRIs; lists are sorted and have no duplicates.
 struct OntologyClass {
   std::string iri;
-  std::map<std::string, std::string> labels;  ///< by language tag; "" for none
-  std::string comment;                        ///< English
-  std::string color;                          ///< "#rrggbb", inherited from the nearest superclass, or ""
-  Mobility mobility = Mobility::Unknown;      ///< inherited as the colour is
-  std::vector<std::string> superclasses;      ///< direct ones
-  std::vector<std::string> ancestors;         ///< all superclasses, without the class itself
-  std::vector<std::string> parts;             ///< classes of its parts, including those inherited from ancestors
-  std::vector<UsualPlace> places;             ///< not inherited; most probable first
+  std::vector<ClassLabel> labels;         ///< all of them name the class
+  std::string comment;                    ///< English
+  std::string color;                      ///< "#rrggbb", inherited from the nearest superclass, or ""
+  Mobility mobility = Mobility::Unknown;  ///< inherited as the colour is
+  std::vector<std::string> superclasses;  ///< direct ones
+  std::vector<std::string> ancestors;     ///< all superclasses, without the class itself
+  std::vector<std::string> parts;         ///< classes of its parts, including those inherited from ancestors
+  std::vector<UsualPlace> places;         ///< not inherited; most probable first
 
-  /// The label in a language, else in English, else the local name of the IRI, else the IRI ("http://e/tree/").
+  /// The label that is shown in a language, else in English, else without a language, else the local name of the IRI,
+  /// else the IRI ("http://e/tree/"). Of several the preferred one, then the first by the bytes of its text.
   std::string label(std::string_view language = "en") const;
 };
 

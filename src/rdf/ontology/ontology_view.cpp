@@ -2,6 +2,7 @@
 // Reads classes and properties from an ontology graph.
 #include <algorithm>
 #include <set>
+#include <utility>
 
 #include "rdf/iri.hpp"
 #include "rdf/ontology/ontology.hpp"
@@ -97,8 +98,14 @@ void readPlaces(const GraphReader& graph, OntologyClass& entry) {
 OntologyClass readClass(const GraphReader& graph, const std::string& iri) {
   OntologyClass entry;
   entry.iri = iri;
-  for (const std::string& property : {rdfs("label"), std::string(kSkos) + "prefLabel"})
-    for (const Term& label : graph.objects(iri, property)) entry.labels[label.language] = label.text;
+  const std::pair<LabelKind, std::string> label_properties[] = {
+      {LabelKind::Preferred, std::string(kSkos) + "prefLabel"},
+      {LabelKind::Plain, rdfs("label")},
+      {LabelKind::Alternative, std::string(kSkos) + "altLabel"}};
+  for (const auto& [kind, property] : label_properties)
+    for (const Term& label : graph.objects(iri, property))
+      if (label.kind == TermKind::Literal) entry.labels.push_back({label.language, kind, label.text});
+  std::sort(entry.labels.begin(), entry.labels.end());
   entry.comment = graph.text(iri, rdfs("comment"), "en");
   for (const Term& color : graph.objects(iri, clx("color"))) entry.color = color.text;
   entry.mobility = mobilityOf(graph.iris(iri, clx("mobility")));
@@ -158,7 +165,8 @@ std::vector<OntologyProperty> readProperties(const GraphReader& graph) {
 
 std::string OntologyClass::label(std::string_view language) const {
   for (const std::string_view tag : {language, std::string_view("en"), std::string_view("")})
-    if (const auto found = labels.find(std::string(tag)); found != labels.end()) return found->second;
+    for (const ClassLabel& label : labels)
+      if (label.language == tag && label.kind != LabelKind::Alternative) return label.text;
   const std::string local = localName(iri);
   return local.empty() ? iri : local;
 }
