@@ -7,6 +7,8 @@
 
 #include "base/ascii.hpp"
 #include "base/nearest_name.hpp"
+#include "rdf/iri.hpp"
+#include "rdf/ontology/class_labels.hpp"
 #include "rules/language/rule_reading.hpp"
 
 namespace cluxel::rules {
@@ -113,6 +115,20 @@ std::string shortName(const std::string& iri, const RuleReading& reading) {
   return "<" + iri + ">";
 }
 
+/// The classes that words without a prefix may mean.
+std::string hintForUnprefixed(const std::string& text, const RuleReading& reading) {
+  std::vector<std::string> meant, known;
+  for (const ClassEntry& entry : reading.catalogue.classes) {
+    known.push_back(shortName(entry.iri, reading));
+    if (rdf::plainWords(rdf::localName(entry.iri)) == rdf::plainWords(text)) meant.push_back(known.back());
+  }
+  std::string list;
+  for (const std::string& name : meant) list += (list.empty() ? "'" : " or '") + name + "'";
+  if (!meant.empty()) return "write a class with its prefix: " + list;
+  const std::string near = suggestion("clx:" + text, known);
+  return near.empty() ? "write a class with its prefix, such as 'clx:Tree'" : near;
+}
+
 }  // namespace
 
 std::string_view unitOf(perception::Dimension dimension) {
@@ -216,8 +232,7 @@ std::optional<std::string> expandName(const YamlNode& node, RuleReading& reading
   if (text->front() == '<' && text->back() == '>') return text->substr(1, text->size() - 2);
   const std::size_t colon = text->find(':');
   if (colon == std::string::npos) {
-    reading.faults.error(node.at, "'" + *text + "' is not a class name",
-                         "write a prefix before it: 'clx:" + *text + "'");
+    reading.faults.error(node.at, "'" + *text + "' is not a class name", hintForUnprefixed(*text, reading));
     return std::nullopt;
   }
   const auto prefix = reading.prefixes.find(text->substr(0, colon));
