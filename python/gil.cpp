@@ -2,8 +2,8 @@
 // A thread that Python ends is stopped where it asks for the GIL.
 #include "gil.hpp"
 
-#include <cxxabi.h>
-#include <unistd.h>
+#include <chrono>
+#include <thread>
 
 namespace cluxel::python {
 
@@ -14,7 +14,7 @@ auto takenBy(const Take& take) noexcept {
   try {
     return take();
   } catch (const abi::__forced_unwind&) {
-    for (;;) pause();
+    for (;;) std::this_thread::sleep_for(std::chrono::hours(1));
   }
 }
 
