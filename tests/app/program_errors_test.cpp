@@ -113,17 +113,12 @@ TEST_F(Program, TryingRulesTellsByItsExitCodeWhetherSomethingDiffers) {
 }
 
 TEST_F(Program, CheckingRulesWarnsOfLabelsThatClassesShare) {
-  writeFile(
-      path("twins.ttl"),
-      "@prefix owl: <http://www.w3.org/2002/07/owl#> . @prefix my: <http://x/> .\n"
-      "@prefix clx: <https://w3id.org/cluxel/ontology#> . @prefix rdfs: <http://www.w3.org/2000/01/rdf-schema#> .\n"
-      "my:A a owl:Class ; rdfs:subClassOf clx:Object ; rdfs:label \"Doppelt\"@en .\n"
-      "my:B a owl:Class ; rdfs:subClassOf clx:Object ; rdfs:label \"Doppelt\"@en .\n");
+  writeFile(path("twins.ttl"),
+            "@prefix owl: <http://www.w3.org/2002/07/owl#> . @prefix my: <http://x/> .\n"
+            "@prefix rdfs: <http://www.w3.org/2000/01/rdf-schema#> .\n"
+            "my:A a owl:Class ; rdfs:label \"Doppelt\"@en . my:B a owl:Class ; rdfs:label \"Doppelt\"@de .\n");
   const Outcome outcome = run("rules check --ontology " + path("twins.ttl").string());
-  EXPECT_EQ(outcome.code, 0);
-  EXPECT_NE(outcome.out.find("warning: the label 'Doppelt' is that of 2 classes, <http://x/A>, <http://x/B>"),
-            std::string::npos)
-      << outcome.out;
+  EXPECT_NE(outcome.out.find("warning: the label 'Doppelt' is that of 2 classes"), std::string::npos) << outcome.out;
 }
 
 TEST_F(Program, CheckingRulesLooksIntoQueries) {
