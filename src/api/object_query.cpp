@@ -95,6 +95,7 @@ std::vector<Object> objectsOf(const rdf::QuadReader& reader, std::string_view cl
   const std::string class_iri = tasks::classNamed(ontology, std::string(class_name), namespaces);
   std::vector<Object> objects = objectsOf(reader, ontology);
   std::erase_if(objects, [&](const Object& object) { return !ontology.isA(object.class_iri, class_iri); });
+  if (objects.empty()) tasks::requireClassOfObjects(ontology, class_iri);
   return objects;
 }
 

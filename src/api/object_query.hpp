@@ -16,7 +16,8 @@ namespace cluxel {
 
 /// All objects with their parts, sorted by IRI. Cost O(objects).
 std::vector<Object> objectsOf(const rdf::QuadReader& reader);
-/// Those of a class, written as for classNamed(), or its subclasses. Throws Error (NotFound) as that does.
+/// Those of a class, written as for classNamed(), or its subclasses. Throws Error (NotFound) as that does, and
+/// as requireClassOfObjects().
 std::vector<Object> objectsOf(const rdf::QuadReader& reader, std::string_view class_name,
                               const std::function<tasks::Namespaces()>& namespaces);
 

@@ -11,6 +11,7 @@
 #include "base/nearest_name.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/facts/semantic_layer.hpp"
+#include "mapping/statements/stated_values.hpp"
 #include "rdf/iri.hpp"
 #include "rdf/ontology/class_names.hpp"
 #include "rdf/vocabulary.hpp"
@@ -127,6 +128,24 @@ std::string classNamed(const mapping::MapReader& map, const rdf::OntologyView& o
 
 std::string classNamed(const mapping::MapReader& map, const std::string& written) {
   return classNamed(map, ontologyViewOf(map.quads()), written);
+}
+
+void requireClassOfObjects(const rdf::OntologyView& ontology, const std::string& class_iri) {
+  const std::string object = rdf::vocabulary::clx("Object");
+  const auto isOfObjects = [&](const rdf::OntologyClass& known) {
+    return ontology.isA(known.iri, object) && ontology.isA(known.iri, class_iri);
+  };
+  if (std::none_of(ontology.classes.begin(), ontology.classes.end(), isOfObjects))
+    throw Error(ErrorKind::InvalidArgument, mapping::noClassOfObjects(class_iri) +
+                                                "; name one such as clx:Tree, or ask for what has it by a query");
+}
+
+void requireClassOfObjects(const mapping::MapReader& map, const rdf::OntologyView& ontology,
+                           const std::string& class_iri) {
+  const auto& objects = map.objects();
+  if (std::none_of(objects.begin(), objects.end(),
+                   [&](const auto& object) { return ontology.isA(object.class_iri, class_iri); }))
+    requireClassOfObjects(ontology, class_iri);
 }
 
 Namespaces namespacesOf(const mapping::MapInputs& inputs) {

@@ -29,6 +29,13 @@ std::string classNamed(const rdf::OntologyView& ontology, const std::string& wri
 std::string classNamed(const mapping::MapReader& map, const rdf::OntologyView& ontology, const std::string& written);
 std::string classNamed(const mapping::MapReader& map, const std::string& written);
 
+/// For a class of which no object of the map is. Throws Error (InvalidArgument) when none can be: it is not below
+/// clx:Object, and neither is a class below it, as of ways, parts and places.
+void requireClassOfObjects(const rdf::OntologyView& ontology, const std::string& class_iri);
+/// The same, unless an object of the map is of the class.
+void requireClassOfObjects(const mapping::MapReader& map, const rdf::OntologyView& ontology,
+                           const std::string& class_iri);
+
 /// The prefixes that the map's ontology and rules declare. Cost: that of parsing both.
 Namespaces namespacesOf(const mapping::MapInputs& inputs);
 

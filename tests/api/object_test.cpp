@@ -72,6 +72,29 @@ TEST(Objects, AreChosenByClassAndItsSubclasses) {
   }
 }
 
+TEST(Objects, AreRefusedForAClassWhoseThingsAreNone) {
+  for (const char* name : {"Way", "TreeTrunk", "Avenue", "Cloud", "ParkingRow"}) try {
+      mapWithObjects().objects(name);
+      ADD_FAILURE() << name;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::InvalidArgument);
+      EXPECT_THAT(error.what(), testing::HasSubstr("is no class of objects: it is not below clx:Object"));
+    }
+  EXPECT_EQ(mapWithObjects().objects("Object").size(), mapWithObjects().objects().size());
+  EXPECT_TRUE(mapWithObjects().objects("TrafficLight").empty()) << "there is none, but there could be";
+}
+
+TEST(Points, OfAnObjectAreThoseOfAnyOfItsNames) {
+  const Object tree = mapWithObjects().objects("Tree").front();
+  const std::string digits = tree.iri.substr(tree.iri.rfind('/') + 1);
+  const std::size_t count = mapWithObjects().points(tree).size();
+  for (const std::string& name :
+       {tree.iri, "<" + tree.iri + ">", digits, "object/" + digits, "#" + std::to_string(tree.number)})
+    EXPECT_EQ(mapWithObjects().points(name).size(), count) << name;
+  EXPECT_THROW(mapWithObjects().points("#100000"), Error);
+  EXPECT_THROW(mapWithObjects().points(mapWithObjects().clouds().front().iri), Error);
+}
+
 TEST(Points, OfACloudAreItsPointsInTheMapFrame) {
   const mapping::MapReader reader(mapWithObjects().file());
   const std::vector<Cloud> clouds = mapWithObjects().clouds();

@@ -55,6 +55,9 @@ TEST_F(ServeCommand, ABoxSelectsTheObjectsThatMeetIt) {
   EXPECT_EQ(shared().get("/objects?bbox=0,0,12").status, 400);
   EXPECT_EQ(shared().get("/objects?bbox=9,0,1,2").status, 400);
   EXPECT_EQ(shared().get("/objects?class=Tre").status, 404);
+  EXPECT_EQ(shared().get("/objects?class=Avenue").status, 400);
+  EXPECT_NE(shared().get("/objects?class=Way&bbox=0,0,12,9").body.find("is no class of objects"), std::string::npos);
+  EXPECT_EQ(jsonOf(shared().get("/objects?class=Tree&bbox=9000,0,9001,1")).at("total"), 0);
   EXPECT_EQ(shared().get("/objects?limit=-1").status, 400);
   EXPECT_EQ(shared().get("/objects?clas=Tree").status, 400);
 }

@@ -89,6 +89,14 @@ TEST(QuestionsOfACampus, TheInventoryHasTheWidthsOfSidewalks) {
   EXPECT_TRUE(inventoryOf(CampusMap::shared().map(), params).items.empty());
 }
 
+TEST(QuestionsOfACampus, TheInventoryRefusesClassesWhoseThingsAreNoObjects) {
+  const MapReader& map = CampusMap::shared().map();
+  for (const char* kind : {"Way", "TreeTrunk", "Place"})
+    EXPECT_THROW(inventoryOf(map, inventoryOfKinds(map, {kind})), Error) << kind;
+  for (const char* kind : {"Object", "Sidewalk", "ParkingRow", "TrafficLight"})
+    EXPECT_NO_THROW(inventoryOf(map, inventoryOfKinds(map, {kind}))) << kind;
+}
+
 TEST(QuestionsOfACampus, TheInventoryTellsWhichRulesOfPlacesAreMissing) {
   const auto notes = [](const MapReader& map) {
     std::string all;

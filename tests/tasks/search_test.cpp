@@ -173,6 +173,13 @@ TEST(WaysOfACampus, ASearchListsWhatIsKnownAndWhereToLook) {
   EXPECT_LE(answer.stops.back().so_far, 1 + 1e-9);
   request.class_name = "StreetLam";
   EXPECT_THROW(searchFor(map, request), Error);
+  request.class_name = "TreeTrunk";
+  try {
+    searchFor(map, request);
+    FAIL() << "trunks are parts";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("is no class of objects"), std::string::npos) << error.what();
+  }
 }
 
 /// Cells on the line of a way, found by another way than the program's: distances of all cells to its segments.

@@ -82,11 +82,9 @@ void requireClass(const std::string& iri, const rules::ClassCatalogue& classes) 
         ErrorKind::InvalidArgument,
         "<" + iri + "> is no class of objects that tells them apart; state one such as clx:Tree or clx:StreetSign");
   if (!isClassOfObjects(iri, classes))
-    throw Error(
-        ErrorKind::InvalidArgument,
-        "<" + iri +
-            "> is no class of objects: it is not below clx:Object, so no question about objects would find what "
-            "has it; state one such as clx:Tree, or write in the ontology that it is rdfs:subClassOf one");
+    throw Error(ErrorKind::InvalidArgument,
+                noClassOfObjects(iri) +
+                    "; state one such as clx:Tree, or write in the ontology that it is rdfs:subClassOf one");
 }
 
 void requireRegion(const RegionAnchor& region) {
@@ -128,6 +126,11 @@ bool namesClass(const Statement& statement) {
 
 bool isClassOfObjects(const std::string& iri, const rules::ClassCatalogue& classes) {
   return classes.find(iri) != nullptr && !isAnyObject(iri) && classes.isA(iri, clx("Object"));
+}
+
+std::string noClassOfObjects(const std::string& iri) {
+  return "<" + iri +
+         "> is no class of objects: it is not below clx:Object, so no question about objects would find what has it";
 }
 
 void requireStatable(const std::string& property) {

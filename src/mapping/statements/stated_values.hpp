@@ -14,6 +14,9 @@ namespace cluxel::mapping {
 /// Whether the ontology knows the class as one of objects: no part, place or cluxel, and not just any object.
 bool isClassOfObjects(const std::string& iri, const rules::ClassCatalogue& classes);
 
+/// "<IRI> is no class of objects: it is not below clx:Object, so no question about objects would find what has it"
+std::string noClassOfObjects(const std::string& iri);
+
 /// Throws Error (InvalidArgument) for a property that the map computes, such as clx:height.
 void requireStatable(const std::string& property);
 

@@ -94,8 +94,9 @@ std::vector<const Object*> selected(const ServedMap& map, const ObjectTable& tab
   const std::string class_iri = class_name ? tasks::classNamed(table.ontology, *class_name, namespaces) : "";
   std::vector<const Object*> objects;
   for (const Object& object : table.objects)
-    if (box.meets(object) && (!class_name || table.ontology.isA(object.class_iri, class_iri)))
-      objects.push_back(&object);
+    if (!class_name || table.ontology.isA(object.class_iri, class_iri)) objects.push_back(&object);
+  if (class_name && objects.empty()) tasks::requireClassOfObjects(table.ontology, class_iri);
+  std::erase_if(objects, [&](const Object* object) { return !box.meets(*object); });
   return objects;
 }
 

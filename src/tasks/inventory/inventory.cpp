@@ -220,6 +220,7 @@ Inventory inventoryOf(const mapping::MapReader& map, const InventoryParams& para
   const rdf::OntologyView ontology = ontologyViewOf(map.quads());
   std::vector<std::string> wanted;
   for (const std::string& name : params.classes) wanted.push_back(classNamed(map, ontology, name));
+  for (const std::string& iri : wanted) requireClassOfObjects(map, ontology, iri);
   const std::vector<bool> is_gone = goneAmong(map);
   std::vector<InventoryItem> items;
   for (std::size_t i = 0; i < is_gone.size(); ++i) {

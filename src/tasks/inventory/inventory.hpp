@@ -58,7 +58,7 @@ struct Inventory {
   double nearest_street_m = kNotMeasured;  ///< the smallest distance of an item from a street
 };
 /// Without objects that later scans show to be gone. Objects first, by class and IRI, then rows and sidewalks by place.
-/// Throws Error (NotFound) for an unknown class.
+/// Throws Error (NotFound) for an unknown class, and as requireClassOfObjects().
 Inventory inventoryOf(const mapping::MapReader& map, const InventoryParams& params,
                       const std::vector<Street>& streets = {});
 

@@ -134,6 +134,7 @@ std::vector<rdf::UsualPlace> usualPlacesOf(const rdf::OntologyView& ontology, co
 SearchAnswer searchFor(const mapping::MapReader& map, const SearchRequest& request) {
   const rdf::OntologyView ontology = ontologyViewOf(map.quads());
   const std::string class_iri = classNamed(map, ontology, request.class_name);
+  requireClassOfObjects(map, ontology, class_iri);
   const Eigen::Vector2d from = request.from.empty() ? lastStop(map) : placeNamed(map, request.from);
   const TerrainGrid terrain = terrainOf(map, request.ways.terrain);
   const PassableGrid grid = passableIn(map, terrain, request.ways);

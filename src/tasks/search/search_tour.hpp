@@ -67,7 +67,7 @@ Eigen::Vector2d lastStop(const mapping::MapReader& map);
 /// Throws Error (InvalidArgument) for a file that says nothing about the class.
 std::vector<rdf::UsualPlace> usualPlacesOf(const rdf::OntologyView& ontology, const std::string& class_iri,
                                            const std::filesystem::path& file);
-/// Throws Error (NotFound) for an unknown class or a start without open ground.
+/// Throws Error (NotFound) for an unknown class or a start without open ground, and as requireClassOfObjects().
 SearchAnswer searchFor(const mapping::MapReader& map, const SearchRequest& request);
 std::string searchJson(const mapping::MapReader& map, const SearchAnswer& answer);
 
