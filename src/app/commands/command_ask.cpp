@@ -125,8 +125,8 @@ ExitCode inventory(const InventoryArguments& arguments, Session& session) {
     const auto entries = tasks::readRegister(arguments.register_file, inputs, ontology);
     return printAnswer(map, registerAnswer(map, params, entries, arguments.comparison), arguments.output, session);
   }
-  const std::vector<tasks::Street> streets =
-      arguments.streets.empty() ? std::vector<tasks::Street>() : tasks::readStreets(arguments.streets, inputs);
+  std::vector<tasks::Street> streets;
+  if (!arguments.streets.empty()) streets = tasks::readStreets(arguments.streets, inputs, session.console);
   return printAnswer(map, inventoryAnswer(map, params, streets), arguments.output, session);
 }
 

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "cluxel/progress.hpp"
 #include "tasks/inventory/inventory.hpp"
 
 namespace cluxel::tasks {
@@ -21,14 +22,16 @@ struct RegisterEntry {
 
 /// Reads a register. CSV: a header with the columns class (or kind), then x and y [m, map] or lon and lat [deg], and if
 /// there are, id and height [m]. GeoJSON: points or lines with the properties class (or kind), id and height, in
-/// longitude and latitude, or in metres where the collection has the member "frame" as Cluxel writes it. Degrees need
-/// the map's coordinate system. Classes are written as classNamed() takes them. The place of a line is that of the
-/// inventory: the middle one of its points, of a parking row their mean. Throws InputError with the line or the feature
-/// of every fault.
+/// longitude and latitude, in the map's coordinate system where the member "crs" names it, or in metres of the map
+/// frame where the collection has the member "frame", whatever its value. Degrees need the map's coordinate system.
+/// Classes are written as classNamed() takes them. The place of a line is that of the inventory: the middle one of its
+/// points, of a parking row their mean. Throws InputError with the line or the feature of every fault.
 std::vector<RegisterEntry> readRegister(const std::filesystem::path& file, const mapping::MapInputs& inputs,
                                         const rdf::OntologyView& ontology);
-/// Reads lines with the property "name" from GeoJSON, in degrees or metres as a register.
-std::vector<Street> readStreets(const std::filesystem::path& file, const mapping::MapInputs& inputs);
+/// Reads lines with the property "name" from GeoJSON, in degrees or metres as a register. Notes how many features are
+/// left out, as they have no name or no line. Throws InputError when none is left.
+std::vector<Street> readStreets(const std::filesystem::path& file, const mapping::MapInputs& inputs,
+                                ProgressSink& sink);
 
 enum class RegisterStatus : std::uint8_t {
   Matched,

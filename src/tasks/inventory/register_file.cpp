@@ -2,6 +2,7 @@
 // Reads registers and streets: CSV and GeoJSON.
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 
 #include "base/ascii.hpp"
@@ -35,13 +36,33 @@ Eigen::Vector2d mapPlaceOf(const GeoReference& earth, const Eigen::Vector2d& deg
   return place;
 }
 
-PlaceReader readerOf(bool is_degrees, const std::filesystem::path& file, const mapping::MapInputs& inputs) {
-  if (!is_degrees) return [](double x, double y) { return Eigen::Vector2d(x, y); };
+/// Of metres in the map frame.
+Eigen::Vector2d placeInMap(double x, double y) {
+  return {x, y};
+}
+
+/// Of longitude and latitude. `in_metres`: what to write for metres of the map frame.
+PlaceReader degreesReader(const std::filesystem::path& file, const mapping::MapInputs& inputs,
+                          const std::string& in_metres) {
   if (inputs.crs.empty())
     throw InputError({.file = file.string()}, "it has longitude and latitude, but the map has no coordinate system",
-                     "write x and y in metres of the map frame");
+                     in_metres);
   const auto earth = std::make_shared<GeoReference>(inputs.crs, inputs.map_origin);
-  return [earth](double lon, double lat) { return mapPlaceOf(*earth, {lon, lat}); };
+  static_cast<void>(earth->longitudeLatitude(Eigen::Vector2d::Zero()));
+  return [earth, file, in_metres](double lon, double lat) {
+    if (std::abs(lon) > 180 || std::abs(lat) > 90)
+      throw InputError({.file = file.string()},
+                       nlohmann::json(lon).dump() + ", " + nlohmann::json(lat).dump() + " is no longitude and latitude",
+                       "write WGS 84 degrees; " + in_metres);
+    try {
+      return mapPlaceOf(*earth, {lon, lat});
+    } catch (const Error&) {  // the map's place is right
+      throw InputError({.file = file.string()},
+                       nlohmann::json(lon).dump() + ", " + nlohmann::json(lat).dump() +
+                           " lies where the map's coordinate system is not defined",
+                       "write longitude and latitude (WGS 84) near the map");
+    }
+  };
 }
 
 std::vector<std::string> csvFields(const std::string& line) {
@@ -121,7 +142,8 @@ std::vector<RegisterEntry> readCsvRegister(const std::filesystem::path& file, co
   if (kind == std::string::npos || x == std::string::npos || y == std::string::npos)
     throw InputError({.file = file.string(), .line = 1, .column = 1}, "the header lacks columns",
                      "write class,x,y (metres of the map frame) or class,lon,lat; id and height may follow");
-  const PlaceReader place = readerOf(is_degrees, file, inputs);
+  const PlaceReader place =
+      is_degrees ? degreesReader(file, inputs, "x and y instead are metres of the map frame") : placeInMap;
   std::vector<RegisterEntry> entries;
   for (std::size_t number = 2; std::getline(lines, line); ++number) {
     const std::vector<std::string> fields = csvFields(line);
@@ -149,9 +171,45 @@ nlohmann::json geoJsonOf(const std::filesystem::path& file) {
   return json;
 }
 
+/// "EPSG:25832" of the names that GeoJSON has for it, such as "urn:ogc:def:crs:EPSG::25832".
+std::string shortSystem(const std::string& name) {
+  std::vector<std::string> words(1);
+  for (const char c : name)
+    if (c == ':' || c == '/')
+      words.emplace_back();
+    else
+      words.back() += ('a' <= c && c <= 'z') ? static_cast<char>(c - 'a' + 'A') : c;
+  const auto system = std::find(words.begin(), words.end(), "CRS");
+  const auto authority = system == words.end() ? words.begin() : std::next(system);
+  return authority == words.end() || authority + 1 == words.end() ? name : *authority + ":" + words.back();
+}
+
+/// The name in the member "crs", which older GeoJSON has and GDAL writes; empty when there is none.
+std::string systemOf(const nlohmann::json& json) {
+  const auto crs = json.find("crs");
+  if (crs == json.end() || crs->is_null()) return {};
+  const auto properties = crs->is_object() ? crs->find("properties") : crs->end();
+  const nlohmann::json& named = properties != crs->end() && properties->is_object() ? *properties : *crs;
+  const auto name = named.is_object() ? named.find("name") : named.end();
+  return name != named.end() && name->is_string() ? shortSystem(name->get<std::string>()) : crs->dump();
+}
+
 PlaceReader geoJsonReader(const nlohmann::json& json, const std::filesystem::path& file,
                           const mapping::MapInputs& inputs) {
-  return readerOf(!json.contains("frame"), file, inputs);
+  static const std::set<std::string> degrees{"", "OGC:CRS84", "OGC:CRS84H", "EPSG:4326", "EPSG:4979", "EPSG:4258"};
+  if (json.contains("frame")) return placeInMap;
+  const std::string system = systemOf(json);
+  if (degrees.contains(system))
+    return degreesReader(file, inputs, "with the member \"frame\": \"map\", numbers are metres of the map frame");
+  if (system == shortSystem(inputs.crs)) {
+    const Eigen::Vector2d origin = inputs.map_origin.head<2>();
+    return [origin](double x, double y) -> Eigen::Vector2d { return Eigen::Vector2d(x, y) - origin; };
+  }
+  throw InputError({.file = file.string()},
+                   "its coordinate system (crs) is '" + system +
+                       "', which is neither that of longitude and latitude nor that of the map" +
+                       (inputs.crs.empty() ? ", which has none" : ", '" + inputs.crs + "'"),
+                   "convert the file to longitude and latitude (WGS 84)");
 }
 
 /// A property as text; empty when it is not there, or null.
@@ -167,17 +225,37 @@ bool isPosition(const nlohmann::json& json) {
   return json.is_array() && json.size() >= 2 && json[0].is_number() && json[1].is_number();
 }
 
-/// The positions of a Point (one) or of a LineString; empty for anything else.
-std::vector<Eigen::Vector2d> positionsOf(const nlohmann::json& feature, const PlaceReader& place) {
-  const auto geometry = feature.find("geometry");
-  if (geometry == feature.end() || !geometry->is_object() || !geometry->contains("coordinates")) return {};
-  const nlohmann::json& coordinates = (*geometry)["coordinates"];
-  const bool is_line = geometry->value("type", nlohmann::json()) == "LineString";
-  const nlohmann::json line = is_line ? coordinates : nlohmann::json::array({coordinates});
+/// Empty for what is no array of positions.
+std::vector<Eigen::Vector2d> positionsIn(const nlohmann::json& line, const PlaceReader& place) {
   if (!line.is_array() || !std::all_of(line.begin(), line.end(), isPosition)) return {};
   std::vector<Eigen::Vector2d> positions;
   for (const nlohmann::json& p : line) positions.push_back(place(p[0].get<double>(), p[1].get<double>()));
   return positions;
+}
+
+/// The type and the coordinates of a feature's geometry; null when it has none.
+std::pair<std::string, nlohmann::json> geometryOf(const nlohmann::json& feature) {
+  const auto geometry = feature.find("geometry");
+  if (geometry == feature.end() || !geometry->is_object() || !geometry->contains("coordinates")) return {};
+  const nlohmann::json type = geometry->value("type", nlohmann::json());
+  return {type.is_string() ? type.get<std::string>() : "", (*geometry)["coordinates"]};
+}
+
+/// The positions of a Point (one) or of a LineString; empty for anything else.
+std::vector<Eigen::Vector2d> positionsOf(const nlohmann::json& feature, const PlaceReader& place) {
+  const auto [type, coordinates] = geometryOf(feature);
+  return positionsIn(type == "LineString" ? coordinates : nlohmann::json::array({coordinates}), place);
+}
+
+/// The lines of a LineString or MultiLineString; none of anything else.
+std::vector<std::vector<Eigen::Vector2d>> linesOf(const nlohmann::json& feature, const PlaceReader& place) {
+  const auto [type, coordinates] = geometryOf(feature);
+  std::vector<std::vector<Eigen::Vector2d>> lines;
+  if (type == "LineString") lines.push_back(positionsIn(coordinates, place));
+  if (type == "MultiLineString" && coordinates.is_array())
+    for (const nlohmann::json& line : coordinates) lines.push_back(positionsIn(line, place));
+  std::erase_if(lines, [](const auto& line) { return line.size() < 2; });
+  return lines;
 }
 
 /// Where the inventory says that a thing with this line is.
@@ -224,18 +302,28 @@ std::vector<RegisterEntry> readRegister(const std::filesystem::path& file, const
   throw InputError({.file = file.string()}, "a register is a file NAME.csv or NAME.geojson");
 }
 
-std::vector<Street> readStreets(const std::filesystem::path& file, const mapping::MapInputs& inputs) {
+std::vector<Street> readStreets(const std::filesystem::path& file, const mapping::MapInputs& inputs,
+                                ProgressSink& sink) {
   const nlohmann::json json = geoJsonOf(file);
   const PlaceReader place = geoJsonReader(json, file, inputs);
   std::vector<Street> streets;
-  for (std::size_t i = 0; i < json["features"].size(); ++i) {
-    const nlohmann::json& feature = json["features"][i];
-    Street street{textProperty(feature, "name"), positionsOf(feature, place)};
-    if (street.name.empty() || street.course.size() < 2)
-      throw InputError({.file = file.string()}, "feature " + std::to_string(i + 1) + " cannot be read",
-                       "write a LineString with the property name");
-    streets.push_back(std::move(street));
+  std::size_t without_line = 0, without_name = 0;
+  for (const nlohmann::json& feature : json["features"]) {
+    const auto lines = linesOf(feature, place);
+    const std::string name = textProperty(feature, "name");
+    if (lines.empty())
+      ++without_line;
+    else if (name.empty())
+      ++without_name;
+    else
+      for (const auto& line : lines) streets.push_back({name, line});
   }
+  const std::string left_out =
+      "features without a line: " + std::to_string(without_line) + ", without a name: " + std::to_string(without_name);
+  if (streets.empty())
+    throw InputError({.file = file.string()}, "it holds no street (" + left_out + ")",
+                     "write a LineString or MultiLineString with the property name");
+  if (without_line + without_name > 0) sink.note(file.string() + ": left out are " + left_out);
   return streets;
 }
 
