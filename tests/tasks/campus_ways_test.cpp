@@ -46,6 +46,18 @@ TEST(WaysOfACampus, LeavingThingsOutOnlyOpensCells) {
   EXPECT_GT(opened, 0U);
 }
 
+TEST(WaysOfACampus, AMobilityIsWrittenAsAClassIs) {
+  const auto without = [](const std::string& name) {
+    WayRequest request;
+    request.without = {name};
+    return leftOut(CampusMap::shared().map(), request);
+  };
+  const std::vector<bool> movable = without("Movable");
+  EXPECT_NE(movable, without("Static"));
+  for (const char* name : {"movable", "MOVABLE", "clx:Movable", "https://w3id.org/cluxel/ontology#Movable"})
+    EXPECT_EQ(without(name), movable) << name;
+}
+
 TEST(WaysOfACampus, RoutesStayOnOpenCellsAndAreReported) {
   const MapReader& map = CampusMap::shared().map();
   const PassableGrid grid = passableIn(map, {});

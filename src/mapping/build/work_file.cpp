@@ -145,8 +145,9 @@ void WorkFile::takeOverStatements(rdf::WriteTransaction& into, bool drop, Progre
   const rdf::QuadReader old(static_cast<const rdf::ReadTransaction&>(*replaced_));
   copyStatementHistory(old, into);
   if (const std::uint64_t quads = copyOperatorStatements(old, into); quads > 0)
-    sink.note(std::to_string(storedStatements(old).size()) + " operator statements of the old map are kept (" +
-              std::to_string(quads) + " quads)");
+    sink.note("kept of the old map: " + std::to_string(quads) + (quads == 1 ? " quad" : " quads") +
+              " of the operator's graph; statements about objects among them: " +
+              std::to_string(storedStatements(old).size()));
 }
 
 void WorkFile::finish() {

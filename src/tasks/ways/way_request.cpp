@@ -2,6 +2,8 @@
 // What names mean in a request for ways: classes, mobilities, places.
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "cluxel/error.hpp"
 #include "rdf/map_iris.hpp"
@@ -23,14 +25,12 @@ class ObjectSelector {
   explicit ObjectSelector(const mapping::MapReader& map) : map_(map), ontology_(ontologyViewOf(map.quads())) {}
 
   void mark(const std::string& name, std::vector<bool>& marked) const {
-    const bool is_mobility = isMobility(name);
-    const std::string iri = is_mobility ? std::string() : classNamed(map_, ontology_, name);
-    const rdf::Mobility mobility = name == "Movable" ? rdf::Mobility::Movable : rdf::Mobility::Static;
+    const std::optional<rdf::Mobility> mobility = mobilityNamed(name);
+    const std::string iri = mobility ? std::string() : classNamed(map_, ontology_, name);
     for (std::size_t i = 0; i < map_.objects().size(); ++i) {
       const std::string& class_iri = map_.objects()[i].class_iri;
       const rdf::OntologyClass* known = ontology_.find(class_iri);
-      const bool is_meant =
-          is_mobility ? known != nullptr && known->mobility == mobility : ontology_.isA(class_iri, iri);
+      const bool is_meant = mobility ? known != nullptr && known->mobility == mobility : ontology_.isA(class_iri, iri);
       if (is_meant) marked[i] = true;
     }
   }
@@ -39,7 +39,7 @@ class ObjectSelector {
   std::vector<std::uint8_t> cells(const std::string& name, const TerrainGrid& terrain,
                                   const std::vector<bool>& is_left_out) const {
     std::vector<std::uint8_t> cells(terrain.frame.size(), 0);
-    if (isMobility(name)) {
+    if (mobilityNamed(name)) {
       std::vector<bool> marked(map_.objects().size(), false);
       mark(name, marked);
       for (std::uint32_t cell = 0; cell < cells.size(); ++cell)
@@ -56,7 +56,17 @@ class ObjectSelector {
   }
 
  private:
-  static bool isMobility(const std::string& name) { return name == "Movable" || name == "Static"; }
+  /// A mobility is written as a class is: with its prefix, or whatever its case.
+  static std::optional<rdf::Mobility> mobilityNamed(const std::string& name) {
+    for (const auto& [local, mobility] :
+         {std::pair("Movable", rdf::Mobility::Movable), std::pair("Static", rdf::Mobility::Static)}) {
+      const std::string iri = rdf::vocabulary::clx(local);
+      if (name == iri || name == "<" + iri + ">" || name == std::string("clx:") + local ||
+          rdf::plainWords(name) == rdf::plainWords(local))
+        return mobility;
+    }
+    return std::nullopt;
+  }
 
   const mapping::MapReader& map_;
   rdf::OntologyView ontology_;
