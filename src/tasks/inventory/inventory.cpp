@@ -191,14 +191,17 @@ InventoryParams inventoryOfKinds(const mapping::MapReader& map, const std::vecto
   if (kinds.empty()) return params;
   params.classes.clear();
   params.with_rows = params.with_sidewalks = false;
+  const rdf::OntologyView ontology = ontologyViewOf(map.quads());
   for (const std::string& kind : kinds) {
-    const std::string iri = classNamed(map, kind);
-    if (iri == rdf::vocabulary::clx("ParkingRow"))
+    const std::string iri = classNamed(map, ontology, kind);
+    if (iri == rdf::vocabulary::clx("ParkingRow")) {
       params.with_rows = true;
-    else if (iri == rdf::vocabulary::clx("Sidewalk"))
+    } else if (iri == rdf::vocabulary::clx("Sidewalk")) {
       params.with_sidewalks = true;
-    else
+    } else {
+      requireClassOfObjects(map, ontology, iri);
       params.classes.push_back(iri);
+    }
   }
   return params;
 }
@@ -220,7 +223,6 @@ Inventory inventoryOf(const mapping::MapReader& map, const InventoryParams& para
   const rdf::OntologyView ontology = ontologyViewOf(map.quads());
   std::vector<std::string> wanted;
   for (const std::string& name : params.classes) wanted.push_back(classNamed(map, ontology, name));
-  for (const std::string& iri : wanted) requireClassOfObjects(map, ontology, iri);
   const std::vector<bool> is_gone = goneAmong(map);
   std::vector<InventoryItem> items;
   for (std::size_t i = 0; i < is_gone.size(); ++i) {

@@ -43,7 +43,8 @@ struct InventoryParams {
 };
 
 /// What is of the named classes, written as classNamed() takes them. clx:ParkingRow and clx:Sidewalk are the rows and
-/// the sidewalks. The defaults without names. Throws Error (NotFound) for an unknown class.
+/// the sidewalks. The defaults without names. Throws Error (NotFound) for an unknown class, and as
+/// requireClassOfObjects().
 InventoryParams inventoryOfKinds(const mapping::MapReader& map, const std::vector<std::string>& kinds);
 
 /// One object, without its street.
@@ -58,7 +59,7 @@ struct Inventory {
   double nearest_street_m = kNotMeasured;  ///< the smallest distance of an item from a street
 };
 /// Without objects that later scans show to be gone. Objects first, by class and IRI, then rows and sidewalks by place.
-/// Throws Error (NotFound) for an unknown class, and as requireClassOfObjects().
+/// Throws Error (NotFound) for an unknown class.
 Inventory inventoryOf(const mapping::MapReader& map, const InventoryParams& params,
                       const std::vector<Street>& streets = {});
 
