@@ -157,6 +157,12 @@ TEST(Presence, IsNotObservedWithoutEvidence) {
   EXPECT_EQ(stateAfter(many, visibilityOf(before), {}), PresenceState::Absent);
 }
 
+TEST(Presence, OfWhatNoScanHitIsNotObserved) {
+  const std::vector<ScanVotes> through{votes(1, 0, 40), votes(2, 0, 40)};
+  EXPECT_FALSE(showAbsence(through, visibilityOf(through), {}));
+  EXPECT_EQ(stateOf(through), PresenceState::NotObserved);
+}
+
 TEST(Presence, NeedsMoreEvidenceThatAThingRaysOftenMissIsGone) {
   const std::vector<ScanVotes> solid{votes(1, 20, 0)}, thin{votes(1, 8, 12), votes(2, 8, 12)};
   const std::vector<ScanVotes> later{votes(3, 0, 5)};

@@ -97,10 +97,11 @@ perception::ScanVotes vote(double time_s, std::size_t hits, std::size_t seen_thr
   return scan;
 }
 
-ObjectStates statesOf(const std::vector<perception::ScanVotes>& votes, double since_s) {
+ObjectStates statesOf(const std::vector<perception::ScanVotes>& votes, double since_s,
+                      const perception::PlaceSet& hit_by_others = {}) {
   std::vector<double> times_s;
   for (const perception::ScanVotes& vote : votes) times_s.push_back(vote.time_s);
-  return tasks::statesOf(0, votes, Visits(times_s, since_s));
+  return tasks::statesOf(0, votes, Visits(times_s, since_s), hit_by_others);
 }
 
 TEST(ObjectStates, OneRayThatPassesOnTheSameVisitDoesNotHideThatAThingLeft) {
@@ -110,6 +111,18 @@ TEST(ObjectStates, OneRayThatPassesOnTheSameVisitDoesNotHideThatAThingLeft) {
   };
   EXPECT_TRUE(wasAway({vote(0, 60, 0), vote(60, 0, 1), vote(kDay_s, 0, 50), vote(2 * kDay_s, 60, 0)}));
   EXPECT_FALSE(wasAway({vote(0, 60, 0), vote(60, 0, 50), vote(2 * kDay_s, 60, 0)})) << "within one visit";
+}
+
+TEST(ObjectStates, AreTheSameWhetherLaterScansThatHitTheThingAreCompared) {
+  using perception::PresenceState;
+  for (const std::size_t seen_through : {2U, 15U, 19U, 20U, 40U, 100U}) {
+    std::vector<perception::ScanVotes> votes{vote(0, 0, seen_through), vote(4000, 0, 0)};
+    const perception::PlaceSet hit_later = vote(8000, 100, 0).hits;
+    const PresenceState until = statesOf(votes, 4000, hit_later).before;
+    votes.push_back(vote(8000, 100, 0));
+    EXPECT_EQ(until, statesOf(votes, 4000).before) << seen_through;
+    EXPECT_EQ(until, seen_through < 20 ? PresenceState::NotObserved : PresenceState::Absent) << seen_through;
+  }
 }
 
 TEST(ObjectStates, OneLaterScanTellsThatAllOfAThingIsGone) {

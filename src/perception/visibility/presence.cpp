@@ -97,7 +97,8 @@ bool showAbsence(std::span<const ScanVotes> votes, const Visibility& thing, cons
   if (logOddsOfPresence(votes, thing.share_of_hits, params) > -params.decided) return false;
   PlaceSet hit, seen_through;
   for (const ScanVotes& vote : votes) hit |= vote.hits, seen_through |= vote.seen_through;
-  return count(seen_through & thing.places & ~hit) >= params.min_share * count(thing.places);
+  const double seen_empty = count(seen_through & thing.places & ~hit);
+  return seen_empty > 0 && seen_empty >= params.min_share * count(thing.places);
 }
 
 std::optional<Presence> presenceOf(std::span<const ScanVotes> votes, const Visibility& thing,

@@ -86,6 +86,7 @@ class Survey {
       : map_(map),
         threads_(threads),
         clouds_(cloudsWithin(map.clouds(), times)),
+        leaves_scans_out_(clouds_.size() < map.clouds().size()),
         regions_(map, max_cluxels),
         unread_(regions_.tiles()) {
     std::vector<double> times_s;
@@ -181,11 +182,19 @@ class Survey {
     kept_cluxels_.add(region, found, unread_);
   }
 
+  /// The places of an object were measured: those that no compared scan hit, by scans that are left out.
+  perception::PlaceSet hitByOthers(std::size_t places) const {
+    perception::PlaceSet hit;
+    for (std::size_t place = 0; leaves_scans_out_ && place < places; ++place) hit.set(place);
+    return hit;
+  }
+
   void addStates(const mapping::MapRegion& region, const std::vector<std::vector<perception::Place>>& places,
                  const std::vector<mapping::ObjectVotes>& votes) {
     for (std::size_t i = 0; i < region.objects.size(); ++i) {
       if (places[i].empty()) continue;
-      ObjectStates states = statesOf(region.number_of_objects[i], votes[i], survey_.visits);
+      ObjectStates states =
+          statesOf(region.number_of_objects[i], votes[i], survey_.visits, hitByOthers(places[i].size()));
       const auto geometry = mapping::geometryOf(region.scene.cluxels, mapping::cluxelsOf(region.objects[i]));
       states.box = {geometry.min, geometry.max};
       states.centre = geometry.box.center.head<2>();
@@ -240,6 +249,7 @@ class Survey {
   const mapping::MapReader& map_;
   unsigned threads_;
   std::vector<mapping::Cloud> clouds_;
+  bool leaves_scans_out_;
   mapping::MapRegions regions_;
   std::vector<TimedScan> scans_;
   KeptCluxels kept_cluxels_;

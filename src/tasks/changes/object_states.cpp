@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How often rays hit a thing that is there is measured on the votes of all scans.
+// How often rays hit a thing that is there is measured on the votes of all scans that are compared.
 #include "tasks/changes/object_states.hpp"
 
 #include <algorithm>
@@ -30,14 +30,16 @@ bool sawThroughAll(std::span<const perception::ScanVotes> votes, const perceptio
 
 }  // namespace
 
-ObjectStates statesOf(std::uint32_t object, std::span<const perception::ScanVotes> votes, const Visits& visits) {
+ObjectStates statesOf(std::uint32_t object, std::span<const perception::ScanVotes> votes, const Visits& visits,
+                      const perception::PlaceSet& hit_by_others) {
   constexpr perception::PresenceParams kParams;
   std::vector<std::uint32_t> of_votes;
   for (const perception::ScanVotes& vote : votes) of_votes.push_back(visits.at(vote.time_s));
   const auto later = std::find_if(of_votes.begin(), of_votes.end(), [&](auto visit) { return visits.isAfter(visit); });
   const auto scans_before = static_cast<std::size_t>(later - of_votes.begin());
   const auto before = votes.first(scans_before), after = votes.subspan(scans_before);
-  const perception::Visibility thing = perception::visibilityOf(votes);
+  perception::Visibility thing = perception::visibilityOf(votes);
+  thing.places |= hit_by_others;
   ObjectStates states;
   states.object = object;
   const std::span all_visits(of_votes);

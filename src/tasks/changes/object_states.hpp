@@ -37,8 +37,10 @@ inline bool wasNotObservedAgain(const ObjectStates& states) {
   return states.before == perception::PresenceState::Present && states.after == perception::PresenceState::NotObserved;
 }
 
-/// The states that the votes of scans of the visits before and after tell. `votes` ascend by time. The box and the
-/// centre are not set.
-ObjectStates statesOf(std::uint32_t object, std::span<const perception::ScanVotes> votes, const Visits& visits);
+/// The states that the votes of scans of the visits before and after tell. `votes` ascend by time. `hit_by_others`:
+/// places that scans hit which are not compared, so that the share of places seen through is the same whatever is
+/// compared. The box and the centre are not set.
+ObjectStates statesOf(std::uint32_t object, std::span<const perception::ScanVotes> votes, const Visits& visits,
+                      const perception::PlaceSet& hit_by_others = {});
 
 }  // namespace cluxel::tasks
