@@ -85,6 +85,23 @@ TEST(MemberPlaces, SeedsCountBeforePlaces) {
       << "without places by its seeds alone";
 }
 
+/// In a merge a scrap has the seeds that stayed; the body, of which the seeds changed, holds seeds of another map.
+TEST(MemberPlaces, ABodyGoesOnThoughAScrapHasTheSeedsThatStayed) {
+  std::vector<Eigen::Vector3d> places;
+  for (int i = 0; i < 12; ++i) places.emplace_back(i, 0, 0);
+  const ObjectMembers whole = objectAt("whole", places), of_other_map = objectAt("other map", {places[4], places[5]});
+  ObjectMembers scrap = objectAt("scrap", {places[0], places[1]});
+  ObjectMembers body = objectAt("body", {places.begin() + 2, places.end()});
+  std::copy_n(whole.seeds.begin(), 2, scrap.seeds.begin());
+  std::copy_n(of_other_map.seeds.begin(), 2, body.seeds.begin() + 2);
+  const auto successors = successorsOf({&whole, &of_other_map}, ObjectsOf::SeveralMaps, {&scrap, &body});
+  ASSERT_EQ(successors[0].size(), 2U);
+  EXPECT_EQ(successors[0][0].count, 2U);
+  EXPECT_EQ(successors[0][1].count, 10U) << "most of it is there";
+  ASSERT_EQ(successors[1].size(), 1U);
+  EXPECT_EQ(successors[1][0].other, 1U);
+}
+
 TEST(MemberPlaces, AnObjectGoesOnInThatOfItsNameWhateverItGains) {
   ObjectMembers before = objectAt("ground", {{0, 0, 0}});
   before.places.clear();

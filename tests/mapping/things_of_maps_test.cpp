@@ -299,6 +299,22 @@ TEST_F(ThingsOfMaps, KeepTheirNamesWhenAllScansMoveAlike) {
   expectNothingStale(moved);
 }
 
+TEST_F(ThingsOfMaps, StayWhenAMapIsMergedWithWhatItWas) {
+  const fs::path a = built(0, 2, "a"), old = folder.path() / "old";
+  fs::copy_file(a, old);
+  for (const std::size_t stop : {3U, 2U}) extendMap(a, scans(stop, stop + 1), {}, silence());
+  const Names names = namesIn(a);
+  std::vector<MapToMerge> maps{{old}, {a}};
+  for (int round = 0; round < 3; ++round) {
+    const fs::path target = folder.path() / ("merged" + std::to_string(round));
+    mergeMaps(maps, target, {}, silence());
+    EXPECT_EQ(canonicalText(target), canonicalText(a));
+    EXPECT_EQ(namesIn(target), names);
+    expectNothingStale(target);
+    maps = round == 0 ? std::vector<MapToMerge>{{a}, {old}} : std::vector<MapToMerge>{{old}, {target}, {a}};
+  }
+}
+
 TEST_F(ThingsOfMaps, OfMergedMapsGoOnFromAllOfThem) {
   const fs::path a = built(0, 2, "a"), b = built(1, 4, "b");  // both hold the second scan
   const Names of_a = namesIn(a), of_b = namesIn(b);

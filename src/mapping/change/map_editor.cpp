@@ -254,8 +254,7 @@ void MapEditor::commit(rdf::WriteTransaction& transaction, const std::string& op
     std::vector<ContentHash> made;
     for (const ObjectMembers& object : layers.after) made.push_back(object.id);
     removeEndsOf(transaction, made);
-    writeThings(transaction, dateTimeText(activity.ended_s), layers.before, layers.after, ObjectsOf::OneMap,
-                keptBy(transaction, layers));
+    writeThings(transaction, dateTimeText(activity.ended_s), layers.before, layers.after, keptBy(transaction, layers));
   }
   report(transaction, layers);
   note(std::move(layers));
@@ -286,7 +285,7 @@ ChangeReport MapEditor::takeReport() {
   return std::move(report_);
 }
 
-void MapEditor::writeDeferredThings() {
+void MapEditor::writeDeferredThings(const NamesInMaps& names) {
   rdf::WriteTransaction transaction = begin();
   report_.after = storedMembers(transaction);
   // Several maps may have the same object.
@@ -299,7 +298,7 @@ void MapEditor::writeDeferredThings() {
   noteStatements();
   if (!last_activity_.empty()) addLineage(transaction, last_activity_, report_.objects);
   removeEndsOf(transaction, storedObjectIds(transaction));
-  writeThings(transaction, dateTimeText(secondsNow()), report_.before, report_.after, ObjectsOf::SeveralMaps);
+  writeThingsOfMerge(transaction, dateTimeText(secondsNow()), report_.before, report_.after, names);
   if (!params_.dry_run) transaction.commit();
 }
 

@@ -89,9 +89,9 @@ class MapEditor {
               const std::vector<Cloud>& scans);
 
   /// For merges: commits write no things. writeDeferredThings() does it once, from the objects of all maps in
-  /// result().before.
+  /// result().before and their names in the maps.
   void deferThings() { defers_things_ = true; }
-  void writeDeferredThings();
+  void writeDeferredThings(const NamesInMaps& names);
 
   /// Ends a change and gives up the build lock; what was read and computed stays in memory for the next change.
   void pause();

@@ -218,11 +218,10 @@ class Merge {
     editor.setInputs(parseInputs(inputsOfResult()));
     ScanAdditions additions(editor, "merge", kStagePoints);
     editor.deferThings();
-    for (std::size_t i = 0; i < maps_.size(); ++i) {
-      if (i == base_) continue;
-      copyOperatorStatements(readers_[i].quads(), additions.transaction(), blankSuffixOf(i));
-      copyHistory(readers_[i].quads(), additions.transaction());
-    }
+    for (std::size_t i = 0; i < maps_.size(); ++i)
+      if (i != base_) copyOperatorStatements(readers_[i].quads(), additions.transaction(), blankSuffixOf(i));
+    const std::vector<NamesOfMap> names = namesOfMaps();
+    copyHistories(names, quadsOfMaps(), base_, additions.transaction());
     leaveOutWithdrawn(additions);
     removeDuplicatesOfBlankNodes(additions.transaction());
     std::vector<std::size_t> others;
@@ -238,8 +237,14 @@ class Merge {
     }
     for (const std::size_t i : others) addMap(i, additions);
     additions.finish();
-    editor.writeDeferredThings();
+    editor.writeDeferredThings(namesIn(names));
     return editor.takeReport();
+  }
+
+  std::vector<NamesOfMap> namesOfMaps() const {
+    std::vector<NamesOfMap> names;
+    for (const MapReader& reader : readers_) names.push_back(namesOfMap(reader.quads(), reader.objectIds()));
+    return names;
   }
 
   /// An older copy of a map does not bring back what was withdrawn since.

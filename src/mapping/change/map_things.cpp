@@ -15,9 +15,15 @@ namespace {
 
 using rdf::vocabulary::kGraphHistory;
 
+/// An object before that goes on in one after.
+struct Predecessor {
+  std::size_t number = 0;  ///< before
+  std::size_t shared = 0;  ///< members
+};
+
 /// Objects before and after a change, matched by successorsOf().
 struct Heirs {
-  std::vector<std::vector<std::size_t>> before_of;     ///< by object after: those whose name it may inherit
+  std::vector<std::vector<Predecessor>> before_of;     ///< by object after: those whose name it may inherit
   std::vector<std::vector<std::size_t>> ancestors_of;  ///< by object after: all that went on in it
   std::vector<std::optional<std::size_t>> heir_of;     ///< by object before: the one that may inherit its name
 };
@@ -37,15 +43,15 @@ std::map<ContentHash, std::size_t> sameObjects(const std::vector<ObjectMembers>&
 }
 
 Heirs heirsOf(const std::vector<ObjectMembers>& before, const std::vector<ObjectMembers>& after, ObjectsOf objects_of) {
-  Heirs heirs{std::vector<std::vector<std::size_t>>(after.size()), std::vector<std::vector<std::size_t>>(after.size()),
+  Heirs heirs{std::vector<std::vector<Predecessor>>(after.size()), std::vector<std::vector<std::size_t>>(after.size()),
               std::vector<std::optional<std::size_t>>(before.size())};
-  std::vector<std::vector<std::size_t>> by_place_of(after.size());
+  std::vector<std::vector<Predecessor>> by_place_of(after.size());
   const auto same = sameObjects(before, after, objects_of);
   ObjectList others_before, others_after;
   std::vector<std::size_t> number_before, number_after;
   for (std::size_t a = 0; a < after.size(); ++a)
     if (const auto found = same.find(after[a].id); found != same.end())
-      heirs.before_of[a] = heirs.ancestors_of[a] = {found->second}, heirs.heir_of[found->second] = a;
+      heirs.before_of[a] = {{found->second}}, heirs.ancestors_of[a] = {found->second}, heirs.heir_of[found->second] = a;
     else
       others_after.push_back(&after[a]), number_after.push_back(a);
   for (std::size_t b = 0; b < before.size(); ++b)
@@ -54,17 +60,22 @@ Heirs heirsOf(const std::vector<ObjectMembers>& before, const std::vector<Object
   for (std::size_t i = 0; i < successors.size(); ++i) {
     const std::size_t b = number_before[i];
     std::optional<std::size_t>& heir = heirs.heir_of[b];
-    std::size_t most = 0;
-    bool is_by_place = false;
-    for (const auto& [other, count, by_place] : successors[i]) {
-      const std::size_t a = number_after[other];
+    const SharedMembers* most = nullptr;
+    for (const SharedMembers& successor : successors[i]) {
+      const std::size_t a = number_after[successor.other];
       heirs.ancestors_of[a].push_back(b);
-      if (heir && (count < most || (count == most && after[*heir].id < after[a].id))) continue;
-      heir = a, most = count, is_by_place = by_place;
+      if (heir && after[*heir].id == before[b].id) continue;  // it is the same
+      const bool is_same = after[a].id == before[b].id;
+      if (most != nullptr && !is_same &&
+          (successor.count < most->count || (successor.count == most->count && after[*heir].id < after[a].id)))
+        continue;
+      heir = a, most = &successor;
     }
-    if (heir) (is_by_place ? by_place_of[*heir] : heirs.before_of[*heir]).push_back(b);
+    if (!heir) continue;
+    const bool is_sure = !most->is_by_place || 2 * most->count > before[b].seeds.size();
+    (is_sure ? heirs.before_of[*heir] : by_place_of[*heir]).push_back({b, most->count});
   }
-  // A name that seeds hand on is surer than one that places do.
+  // A name that seeds hand on, or most members by their places, is surer than one that some places do.
   for (std::size_t a = 0; a < after.size(); ++a)
     if (heirs.before_of[a].empty()) heirs.before_of[a] = std::move(by_place_of[a]);
   return heirs;
@@ -72,23 +83,38 @@ Heirs heirsOf(const std::vector<ObjectMembers>& before, const std::vector<Object
 
 class Naming {
  public:
-  Naming(rdf::WriteTransaction& transaction, std::string time, const IsInBoth& is_in_both)
+  /// `names`: of a merge, those that objects have in the maps.
+  Naming(rdf::WriteTransaction& transaction, std::string time, IsInBoth is_in_both, const NamesInMaps* names = nullptr)
       : reader_(static_cast<const rdf::ReadTransaction&>(transaction)),
         stored_(reader_),
         writer_(transaction),
         time_(std::move(time)),
-        is_in_both_(is_in_both) {}
+        is_in_both_(std::move(is_in_both)) {
+    if (names == nullptr) return;
+    in_maps_.emplace();
+    for (const auto& [object, things] : names->of_object)
+      for (const std::string& thing : things) (*in_maps_)[object].push_back({thing, stored_.since(thing).value_or("")});
+    for (auto& [object, things] : *in_maps_) std::sort(things.begin(), things.end());
+    for (const std::string& thing : names->outdated) {
+      if (!stored_.endsOf(thing).empty()) ended_.insert(thing);
+      if (!stored_.replacementsOf(thing).empty()) replaced_since_.insert(thing);
+    }
+  }
 
   void run(const std::vector<ObjectMembers>& before, const std::vector<ObjectMembers>& after, ObjectsOf objects_of) {
     const Heirs heirs = heirsOf(before, after, objects_of);
     std::vector<std::optional<Thing>> names(after.size());
+    if (in_maps_) names = keptNames(after, *in_maps_);
+    for (const std::optional<Thing>& name : names) held(name);
+    for (const ObjectMembers& object : before)
+      for (const Thing& thing : namesOf(object.id)) had_object_.insert(thing.iri);
     const std::vector<char> is_back = areBack(before, after);
     const auto inherit = [&](std::size_t a) { names[a] = held(inherited(before, heirs.before_of[a])); };
     for (std::size_t a = 0; a < after.size(); ++a)
-      if (is_back[a] == 0) inherit(a);
+      if (is_back[a] == 0 && !names[a]) inherit(a);
     // Of several that had the same name, the one to which it would come anyway is first.
     for (std::size_t a = 0; a < after.size(); ++a)
-      if (is_back[a] != 0 && hadName(after[a].id, inherited(before, heirs.before_of[a]))) inherit(a);
+      if (is_back[a] != 0 && !names[a] && hadName(after[a].id, inherited(before, heirs.before_of[a]))) inherit(a);
     for (std::size_t a = 0; a < after.size(); ++a)
       if (is_back[a] != 0 && !names[a]) names[a] = returned(after[a].id);
     for (std::size_t a = 0; a < after.size(); ++a)
@@ -96,15 +122,13 @@ class Naming {
     for (std::size_t a = 0; a < after.size(); ++a) {
       if (names[a]) continue;
       names[a] = named(after[a].id);
-      for (const std::size_t b : heirs.ancestors_of[a]) derive(names[a]->iri, nameOf(before[b].id).iri);
+      for (const std::size_t b : heirs.ancestors_of[a])
+        for (const Thing& thing : namesOf(before[b].id)) derive(names[a]->iri, thing.iri);
     }
     for (std::size_t a = 0; a < after.size(); ++a) link(after[a].id, *names[a]);
-    for (std::size_t b = 0; b < before.size(); ++b) {
-      std::vector<Thing> things = thingsOf(before[b].id);  // two where several maps named the object
-      if (things.empty()) things = {nameOf(before[b].id)};
-      for (const Thing& thing : things)
+    for (std::size_t b = 0; b < before.size(); ++b)
+      for (const Thing& thing : namesOf(before[b].id))
         if (!isHeld(thing.iri)) end(thing, heirs.heir_of[b] ? names[*heirs.heir_of[b]] : std::nullopt);
-    }
     writer_.flush();
   }
 
@@ -131,12 +155,17 @@ class Naming {
     return are_back;
   }
 
-  /// The oldest of the names that meet in an object and that no other has. The others end.
-  std::optional<Thing> inherited(const std::vector<ObjectMembers>& before, const std::vector<std::size_t>& from) {
+  /// The oldest of the names that meet in an object and that no other has, of equally old ones that of which most goes
+  /// on. The others end.
+  std::optional<Thing> inherited(const std::vector<ObjectMembers>& before, const std::vector<Predecessor>& from) {
     std::optional<Thing> oldest;
-    for (const std::size_t b : from)
-      if (const Thing claim = nameOf(before[b].id); !held_.contains(claim.iri) && (!oldest || claim < *oldest))
-        oldest = claim;
+    std::size_t most = 0;
+    for (const auto& [b, shared] : from)
+      for (const Thing& claim : namesOf(before[b].id)) {
+        if (held_.contains(claim.iri)) continue;
+        if (oldest && std::tie(oldest->since, shared, oldest->iri) <= std::tie(claim.since, most, claim.iri)) continue;
+        oldest = claim, most = shared;
+      }
     return oldest;
   }
 
@@ -170,6 +199,15 @@ class Naming {
     return thingOf(things_, object);
   }
 
+  /// The names of an object before: its thing, or those that maps give it.
+  std::vector<Thing> namesOf(const ContentHash& object) {
+    if (!in_maps_) return {nameOf(object)};
+    std::vector<Thing> names;
+    if (const auto known = in_maps_->find(object); known != in_maps_->end()) names = known->second;
+    std::erase_if(names, [&](const Thing& thing) { return replaced_since_.contains(thing.iri); });
+    return names;
+  }
+
   /// Whether a thing has an object after the change.
   bool isHeld(const std::string& thing) {
     if (held_.contains(thing)) return true;
@@ -195,17 +233,21 @@ class Naming {
       is_linked = is_linked || other.iri == thing.iri;
       if (other.iri == thing.iri) continue;
       remove(iri, provenance("specializationOf"), Term::iri(other.iri));
-      if (!isHeld(other.iri)) end(other, thing);
+      if (!isHeld(other.iri) && !had_object_.contains(other.iri)) end(other, thing);
     }
     if (!is_linked) add(iri, provenance("specializationOf"), Term::iri(thing.iri));
   }
 
-  /// `heir`: the thing whose object continues that of the one that ends. A thing that ended earlier keeps that time.
+  /// `heir`: the thing whose object continues that of the one that ends. A thing that ended earlier keeps that time,
+  /// and what has replaced it since.
   void end(const Thing& thing, const std::optional<Thing>& heir) {
     if (!ended_.insert(thing.iri).second) return;
     if (stored_.endsOf(thing.iri).empty()) add(thing.iri, provenance("invalidatedAtTime"), timeTerm());
     if (!heir) return;
     derive(heir->iri, thing.iri);
+    const std::vector<Term> earlier = stored_.replacementsOf(thing.iri);
+    if (!earlier.empty() && !had_object_.contains(thing.iri)) return;
+    for (const Term& other : earlier) remove(thing.iri, isReplacedBy(), other);
     add(thing.iri, isReplacedBy(), Term::iri(heir->iri));
   }
 
@@ -213,44 +255,27 @@ class Naming {
   ThingLookup stored_;
   rdf::QuadWriter writer_;
   std::string time_;
-  const IsInBoth& is_in_both_;
-  Things things_;               ///< of the objects that were looked up
-  std::set<std::string> held_;  ///< things that an object of the change has after it
-  std::set<std::string> ended_;
+  IsInBoth is_in_both_;
+  Things things_;                         ///< of the objects that were looked up
+  std::optional<Things> in_maps_;         ///< of a merge
+  std::set<std::string> replaced_since_;  ///< of a merge: those that what became of an older map has replaced
+  std::set<std::string> had_object_;      ///< things of objects before
+  std::set<std::string> held_;            ///< things that an object of the change has after it
+  std::set<std::string> ended_;           ///< things of which the end is written
 };
 
 }  // namespace
 
 void writeThings(rdf::WriteTransaction& transaction, const std::string& time, const std::vector<ObjectMembers>& before,
-                 const std::vector<ObjectMembers>& after, ObjectsOf objects_of, const IsInBoth& is_in_both) {
-  Naming(transaction, time, is_in_both).run(before, after, objects_of);
+                 const std::vector<ObjectMembers>& after, const IsInBoth& is_in_both) {
+  Naming(transaction, time, is_in_both).run(before, after, ObjectsOf::OneMap);
 }
 
-void copyHistory(const rdf::QuadReader& from, rdf::WriteTransaction& into) {
-  const auto graph = from.idOf(Term::iri(kGraphHistory));
-  if (!graph) return;
-  const auto begins = from.idOf(Term::iri(provenance("generatedAtTime"))),
-             ends = from.idOf(Term::iri(provenance("invalidatedAtTime")));
-  const rdf::QuadReader there(static_cast<const rdf::ReadTransaction&>(into));
-  const ThingLookup things(there);
-  rdf::QuadWriter writer(into);
-  rdf::QuadCursor cursor = from.scan({.s = {}, .p = {}, .o = {}, .g = *graph});
-  for (rdf::QuadIds quad; cursor.next(quad);) {
-    const Quad copied{from.termOf(quad.s), from.termOf(quad.p), from.termOf(quad.o), Term::iri(kGraphHistory)};
-    if ((quad.p == begins || quad.p == ends) && hashIn(copied.subject.text, "thing")) {
-      // Of both maps it begins and ends with the earlier one. What has an object in one of them does not end.
-      std::optional<std::string> known = quad.p == begins ? things.since(copied.subject.text) : std::nullopt;
-      if (quad.p == ends)
-        for (const Term& time : things.endsOf(copied.subject.text)) known = time.text;
-      if (known && *known <= copied.object.text) continue;
-      if (known)
-        writer.remove(rdf::QuadIds{writer.intern(copied.subject), writer.intern(copied.predicate),
-                                   writer.intern(Term::literal(*known, rdf::vocabulary::xsd("dateTime"))),
-                                   writer.intern(copied.graph)});
-    }
-    writer.add(copied);
-  }
-  writer.flush();
+void writeThingsOfMerge(rdf::WriteTransaction& transaction, const std::string& time,
+                        const std::vector<ObjectMembers>& before, const std::vector<ObjectMembers>& after,
+                        const NamesInMaps& names) {
+  Naming(transaction, time, {}, &names).run(before, after, ObjectsOf::SeveralMaps);
+  keepOneReplacementEach(transaction);
 }
 
 Lineage::Lineage(const rdf::QuadReader& quads, const std::vector<ContentHash>& present)

@@ -13,6 +13,7 @@
 
 #include "mapping/change/object_changes.hpp"
 #include "mapping/thing_history.hpp"
+#include "mapping/things/merged_things.hpp"
 #include "rdf/file/environment.hpp"
 #include "rdf/store/quad_store.hpp"
 
@@ -22,16 +23,19 @@ namespace cluxel::mapping {
 using IsInBoth = std::function<bool(const ContentHash& object)>;
 
 /// Gives each object after a change its thing, and records splits, joins and ends. The part with most shared members
-/// keeps a name (ties: the smallest hash). A join keeps the older name, then the smaller. An object that comes back as
-/// it was gets its former name, if no other has it. A new thing is named by the hash of its first object. `time` is an
-/// xsd:dateTime. Of one map, objects that are the same before and after need not be given when `is_in_both` knows them.
-/// Cost: that of the objects given and of their history.
+/// keeps a name (ties: the smallest hash). A join keeps the older name, of equally old ones that of the object with
+/// most shared members, then the smaller. An object that comes back as it was gets its former name, if no other has it.
+/// A new thing is named by the hash of its first object. `time` is an xsd:dateTime. Objects that are the same before
+/// and after need not be given when `is_in_both` knows them. Cost: that of the objects given and of their history.
 void writeThings(rdf::WriteTransaction& transaction, const std::string& time, const std::vector<ObjectMembers>& before,
-                 const std::vector<ObjectMembers>& after, ObjectsOf objects_of = ObjectsOf::OneMap,
-                 const IsInBoth& is_in_both = {});
+                 const std::vector<ObjectMembers>& after, const IsInBoth& is_in_both = {});
 
-/// Adds the history of another map: its activities, lineage and things.
-void copyHistory(const rdf::QuadReader& from, rdf::WriteTransaction& into);
+/// The same of a merge, into which the histories of all maps were copied. `before`: the objects of all maps. `names`:
+/// those that they have in the maps; where such an object is in the result, too, it keeps its name before others are
+/// handed on (keptNames()).
+void writeThingsOfMerge(rdf::WriteTransaction& transaction, const std::string& time,
+                        const std::vector<ObjectMembers>& before, const std::vector<ObjectMembers>& after,
+                        const NamesInMaps& names);
 
 struct FormerName {
   ContentHash object;   ///< the present object

@@ -81,8 +81,7 @@ void inferAfterUpdate(rdf::WriteTransaction& transaction, const std::set<rdf::Qu
   const Activity activity{params.operation, started_s, secondsNow(), clock.seconds()};
   addLineage(transaction, addActivity(transaction, activity, {}, parsed.inputs),
              compareStates(layers.before, layers.after));
-  writeThings(transaction, dateTimeText(activity.ended_s), layers.before, layers.after, ObjectsOf::OneMap,
-              keptBy(transaction, layers));
+  writeThings(transaction, dateTimeText(activity.ended_s), layers.before, layers.after, keptBy(transaction, layers));
 }
 
 sparql::UpdateReport updateMap(const std::filesystem::path& file, const std::string& update,

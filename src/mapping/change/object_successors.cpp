@@ -52,20 +52,38 @@ class SuccessorSearch {
     }
   }
 
-  /// For objects before that none continues, and for objects after that continue none.
+  /// Whether seeds tell where most of an object is, or its name does.
+  bool isSettled(std::uint32_t before) const {
+    return std::any_of(successors_[before].begin(), successors_[before].end(), [&](const SharedMembers& successor) {
+      return isMost(before, successor.count) || after_[successor.other]->id == before_[before]->id;
+    });
+  }
+  bool isMost(std::uint32_t before, std::size_t count) const { return 2 * count > before_[before]->seeds.size(); }
+
+  /// For objects before of which seeds do not tell where most is, and for objects after that continue none.
   void addByPlaces() {
     const std::vector<char> has_seeds_of_before = has_predecessor_;
-    std::vector<char> is_orphan;
-    for (const auto& successors : successors_) is_orphan.push_back(successors.empty() ? 1 : 0);
-    const bool is_all_known = std::count(is_orphan.begin(), is_orphan.end(), 1) == 0 &&
+    std::vector<char> is_orphan, is_settled;
+    for (std::uint32_t b = 0; b < before_.size(); ++b) {
+      is_orphan.push_back(successors_[b].empty() ? 1 : 0);
+      is_settled.push_back(isSettled(b) ? 1 : 0);
+    }
+    const bool is_all_known = std::count(is_settled.begin(), is_settled.end(), 0) == 0 &&
                               std::count(has_seeds_of_before.begin(), has_seeds_of_before.end(), 0) == 0;
     const auto has_places = [](const ObjectMembers* object) { return !object->places.empty(); };
     if (is_all_known || std::none_of(before_.begin(), before_.end(), has_places)) return;
     const Shared shared = sharedBySeedOrPlace(before_, objects_of_, after_);
     for (std::uint32_t b = 0; b < before_.size(); ++b)
-      for (const auto& [a, count, is_by_place] : shared[b])
-        if (is_by_place && (is_orphan[b] != 0 || has_seeds_of_before[a] == 0) && isEnough(b, a, count))
+      for (const auto& [a, count, is_by_place] : shared[b]) {
+        const auto by_seeds = std::find_if(successors_[b].begin(), successors_[b].end(),
+                                           [other = a](const SharedMembers& known) { return known.other == other; });
+        if (by_seeds != successors_[b].end()) {
+          if (is_settled[b] == 0) by_seeds->count = count;
+        } else if (is_by_place && isEnough(b, a, count) &&
+                   (is_orphan[b] != 0 || has_seeds_of_before[a] == 0 || (is_settled[b] == 0 && isMost(b, count)))) {
           add(b, a, count, true);
+        }
+      }
   }
 
   const ObjectList& before_;
