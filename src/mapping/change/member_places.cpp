@@ -4,9 +4,11 @@
 
 #include <array>
 #include <cmath>
+#include <optional>
 #include <set>
 #include <tuple>
 #include <unordered_map>
+#include <utility>
 
 #include "mapping/clouds/scan_store.hpp"
 
@@ -14,56 +16,63 @@ namespace cluxel::mapping {
 
 namespace {
 
-using Steps = std::array<std::int64_t, 3>;
+using Steps = std::array<std::int32_t, 3>;
 
 constexpr double kStep_m = 0.05;
-constexpr std::int64_t kNear = 6;  ///< steps
+constexpr std::int32_t kNear = 6;  ///< steps
 static_assert(kNear * kStep_m > kSamePlace_m - 1e-9 && kNear * kStep_m < kSamePlace_m + 1e-9);
 constexpr int kBits = 21;  ///< of each coordinate
 constexpr std::int64_t kHalf = std::int64_t{1} << (kBits - 1), kMask = (std::int64_t{1} << kBits) - 1;
+constexpr std::uint32_t kNone = 0xffffffffU;
 
 Steps stepsOf(MemberPlace place) {
   Steps steps{};
-  for (std::size_t axis = 0; axis < 3; ++axis) steps[axis] = static_cast<std::int64_t>(place >> (kBits * axis)) & kMask;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    steps[axis] = static_cast<std::int32_t>(static_cast<std::int64_t>(place >> (kBits * axis)) & kMask);
   return steps;
 }
 
 std::int64_t squaredDistance(const Steps& a, const Steps& b) {
   std::int64_t sum = 0;
-  for (std::size_t axis = 0; axis < 3; ++axis) sum += (a[axis] - b[axis]) * (a[axis] - b[axis]);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::int64_t difference = a[axis] - b[axis];
+    sum += difference * difference;
+  }
   return sum;
 }
 
-/// A member whose seed no other object has, and the nearest member of another so far.
+/// A member whose seed no other object has, and the nearest member of another so far. There may be millions of them.
 struct Lookout {
   std::uint32_t object = 0;
   Steps steps{};
-  std::int64_t nearest = kNear * kNear;
+  std::int32_t nearest = kNear * kNear;
   std::uint32_t owner = kNoOwner;
-  std::size_t member = 0;  ///< of the owner
+  std::uint32_t member = 0;    ///< of the owner
+  std::uint32_t next = kNone;  ///< in the same cell
 };
 
 class PlaceGrid {
  public:
   void add(const Lookout& lookout) {
-    cells_[cellOf(lookout.steps, {0, 0, 0})].push_back(lookouts_.size());
+    std::uint32_t& first = cells_.try_emplace(cellOf(lookout.steps, {0, 0, 0}), kNone).first->second;
     lookouts_.push_back(lookout);
+    lookouts_.back().next = std::exchange(first, static_cast<std::uint32_t>(lookouts_.size() - 1));
   }
   const std::vector<Lookout>& lookouts() const { return lookouts_; }
 
   template <typename IsBetter>
-  void offer(const Steps& steps, std::uint32_t owner, std::size_t member, const IsBetter& is_better) {
-    for (std::int64_t x = -1; x <= 1; ++x)
-      for (std::int64_t y = -1; y <= 1; ++y)
-        for (std::int64_t z = -1; z <= 1; ++z) {
+  void offer(const Steps& steps, std::uint32_t owner, std::uint32_t member, const IsBetter& is_better) {
+    for (std::int32_t x = -1; x <= 1; ++x)
+      for (std::int32_t y = -1; y <= 1; ++y)
+        for (std::int32_t z = -1; z <= 1; ++z) {
           const auto cell = cells_.find(cellOf(steps, {x, y, z}));
           if (cell == cells_.end()) continue;
-          for (const std::size_t number : cell->second) {
+          for (std::uint32_t number = cell->second; number != kNone; number = lookouts_[number].next) {
             Lookout& lookout = lookouts_[number];
             const std::int64_t distance = squaredDistance(lookout.steps, steps);
             if (distance > lookout.nearest) continue;
             if (distance == lookout.nearest && !is_better(owner, lookout.owner)) continue;
-            lookout.nearest = distance, lookout.owner = owner, lookout.member = member;
+            lookout.nearest = static_cast<std::int32_t>(distance), lookout.owner = owner, lookout.member = member;
           }
         }
   }
@@ -77,7 +86,7 @@ class PlaceGrid {
   }
 
   std::vector<Lookout> lookouts_;
-  std::unordered_map<std::uint64_t, std::vector<std::size_t>> cells_;
+  std::unordered_map<std::uint64_t, std::uint32_t> cells_;  ///< the last one in it
 };
 
 }  // namespace
@@ -117,25 +126,29 @@ std::vector<std::vector<SharedMembers>> sharedBySeedOrPlace(const ObjectList& ob
   const auto add = [&](std::uint32_t object, std::uint32_t other) {
     ++shared[object].try_emplace(other, SharedMembers{other}).first->second.count;
   };
-  const SeedOwners owners(others), owners_here(objects_of == ObjectsOf::OneMap ? objects : ObjectList{});
+  std::optional<SeedOwners> owners(others);
   PlaceGrid grid;
   for (std::uint32_t object = 0; object < objects.size(); ++object)
     for (std::size_t member = 0; member < objects[object]->seeds.size(); ++member) {
-      const std::uint32_t owner = owners.ownerOf(objects[object]->seeds[member]);
+      const std::uint32_t owner = owners->ownerOf(objects[object]->seeds[member]);
       if (owner != kNoOwner)
         add(object, owner);
       else if (const MemberPlace place = objects[object]->placeOf(member); place != kNoMemberPlace)
         grid.add({object, stepsOf(place)});
     }
+  if (objects_of == ObjectsOf::OneMap)
+    owners.emplace(objects);
+  else
+    owners.reset();
   const auto is_better = [&](std::uint32_t a, std::uint32_t b) {
     return b == kNoOwner || others[a]->id < others[b]->id;
   };
   for (std::uint32_t other = 0; other < others.size() && !grid.lookouts().empty(); ++other)
-    for (std::size_t member = 0; member < others[other]->places.size(); ++member)
+    for (std::uint32_t member = 0; member < others[other]->places.size(); ++member)
       if (const MemberPlace place = others[other]->places[member];
-          place != kNoMemberPlace && owners_here.ownerOf(others[other]->seeds[member]) == kNoOwner)
+          place != kNoMemberPlace && (!owners || owners->ownerOf(others[other]->seeds[member]) == kNoOwner))
         grid.offer(stepsOf(place), other, member, is_better);
-  std::set<std::tuple<std::uint32_t, std::uint32_t, std::size_t>> met;  // object, other and its member
+  std::set<std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>> met;  // object, other and its member
   for (const Lookout& lookout : grid.lookouts())
     if (lookout.owner != kNoOwner && met.emplace(lookout.object, lookout.owner, lookout.member).second) {
       add(lookout.object, lookout.owner);

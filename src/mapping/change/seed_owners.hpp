@@ -15,7 +15,7 @@ ObjectList listOf(const std::vector<ObjectMembers>& objects);
 
 inline constexpr std::uint32_t kNoOwner = 0xffffffffU;
 
-/// Open addressing, at most half full: a node for each member would cost most of a comparison.
+/// Open addressing, two thirds full: a node for each member would cost most of a comparison.
 class SeedOwners {
  public:
   /// Of a seed that several objects hold, the first one counts.
