@@ -81,6 +81,46 @@ TEST_F(MapFile, HoldsWhatALongTransactionWroteEarly) {
   }
 }
 
+TEST_F(MapFile, ReadsIndexesAfterTheirPagesWereWrittenEarly) {
+  const auto environment = create();
+  const auto quadOf = [](int number) {
+    const std::string text = std::to_string(number);
+    return Quad{Term::iri("http://example.org/s" + text), Term::iri("http://example.org/p"), Term::literal(text), {}};
+  };
+  constexpr int kStored = 60'000, kAdded = 300;
+  {
+    WriteTransaction transaction = environment->write();
+    QuadWriter writer(transaction);
+    for (int number = 0; number < kStored; ++number) writer.add(quadOf(number));
+    writer.flush();
+    transaction.commit();
+  }
+  WriteTransaction transaction = environment->write();
+  for (int round = 0; round < 4; ++round) {
+    const int first = kStored + round * kAdded;
+    QuadWriter writer(transaction);
+    for (int number = first; number < first + kAdded; ++number) writer.add(quadOf(number));
+    writer.flush();
+    transaction.writePages();
+    for (int block = 0; block < 200; ++block)  // they take the memory of pages that were written
+      transaction.putBlock("t", std::to_string(block), std::string(round % 2 == 0 ? 1500 : 9000, 'x'));
+    const QuadReader reader(static_cast<const ReadTransaction&>(transaction));
+    ASSERT_EQ(reader.size(), static_cast<std::uint64_t>(first + kAdded));
+    QuadWriter other(transaction);
+    for (int number = 7; number < first + kAdded; number += 7) {
+      const Quad quad = quadOf(number);
+      const auto subject = reader.idOf(quad.subject), object = reader.idOf(quad.object);
+      ASSERT_TRUE(subject && object) << "quad " << number << " in round " << round;
+      ASSERT_EQ(other.intern(quad.subject), *subject) << number;
+      QuadCursor cursor = reader.scan({.s = subject, .p = {}, .o = object, .g = {}});
+      QuadIds found;
+      ASSERT_TRUE(cursor.next(found)) << number;
+    }
+  }
+  transaction.commit();
+  EXPECT_TRUE(checkMap(file_).sound());
+}
+
 TEST_F(MapFile, ForgetsWhatATransactionWroteEarlyAndDidNotCommit) {
   const auto environment = create();
   put(*environment, "a", "1");

@@ -164,7 +164,6 @@ class GrowthUpdate {
   /// Decides the whole map, when a strip cannot be decided alone.
   SemanticUpdate decideWholeMap() {
     work_.stages.readAsBefore(nullptr, {});
-    readCommittedSummaries();
     OutputChanges rest;
     for (const TileKey& tile : new_) noteChange(tile, true, rest);
     for (const TileKey& tile : other_) noteChange(tile, hidden_.contains(tile), rest);

@@ -161,8 +161,7 @@ void clearHistory(rdf::WriteTransaction& transaction) {
   const auto graph = quads.idOf(Term::iri(kGraphHistory));
   if (!graph) return;
   rdf::QuadWriter writer(transaction);
-  rdf::QuadCursor cursor = quads.scan({.s = {}, .p = {}, .o = {}, .g = *graph});
-  for (rdf::QuadIds quad; cursor.next(quad);) writer.remove(quad);
+  writer.clearGraph(*graph);
   writer.flush();
 }
 

@@ -79,8 +79,9 @@ class WriteTransaction : public ReadTransaction {
   bool eraseBlock(std::string_view table, std::string_view key);  ///< false when the block does not exist
   /// How many threads may sort and merge what is written; the outcome is the same. One, unless it is told.
   void useThreads(unsigned threads);
-  /// Writes the pages that wait in memory to the file, where no reader sees them before the commit. Large blocks and
-  /// indexes do so by themselves. A page that changes again is written again.
+  /// Writes the pages that wait in memory to the file, where no reader sees them before the commit, and invalidates
+  /// what was read through the transaction, as any write does. Blocks, and indexes that are written anew, do so by
+  /// themselves when they are many. A page that changes again is written again.
   void writePages();
   /// Writes the indexes that wait in memory, as commit() does. Expects that nothing is waiting for a flush.
   void writeIndexes();

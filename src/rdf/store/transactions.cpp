@@ -243,7 +243,10 @@ void ReadTransaction::Impl::writePages() {
   MDB_val key = toVal(kTableNames[static_cast<std::size_t>(Table::Blocks)]);
   MDB_val refused{kMostPages / 2 * stat.ms_psize, nullptr};  // LMDB counts a value twice
   const int code = mdb_put(live(), environment->mainTable(), &key, &refused, 0);
-  if (code != MDB_INCOMPATIBLE) check(code, "write the map");
+  // What was read of these pages lies in memory that LMDB has freed.
+  directories->notePagesWritten();
+  snapshot.reset();
+  if (code != MDB_INCOMPATIBLE && code != MDB_BAD_VALSIZE) check(code, "write the map");
 }
 
 void ReadTransaction::Impl::noteWritten(std::uint64_t bytes) {

@@ -30,7 +30,8 @@ HttpResponse responseWith(LimitedBody& body, const ResultOffer& offer) {
 /// Clients take a few KiB of headers.
 constexpr std::size_t kMostWarnings = 8, kMostWarningBytes = 600;
 
-/// One line of printable ASCII: what is none is percent-encoded, as the percent sign.
+/// One line of printable ASCII: what is none is percent-encoded, as the percent sign. A long one ends between
+/// characters.
 std::string headerText(const Diagnostic& warning) {
   constexpr std::string_view digits = "0123456789ABCDEF";
   std::string text;
@@ -42,7 +43,14 @@ std::string headerText(const Diagnostic& warning) {
     else
       text.append({'%', digits[byte >> 4U], digits[byte & 15U]});
   }
-  return text.size() <= kMostWarningBytes ? text : text.substr(0, kMostWarningBytes) + "...";
+  if (text.size() <= kMostWarningBytes) return text;
+  const auto isWithinCharacter = [&text](std::size_t end) {  // before a byte of UTF-8 that goes on, from 80 to BF
+    return text[end - 1] == '%' || text[end - 2] == '%' ||
+           (text[end] == '%' && text[end + 1] >= '8' && text[end + 1] <= 'B');
+  };
+  std::size_t end = kMostWarningBytes;
+  while (isWithinCharacter(end)) --end;
+  return text.substr(0, end) + "...";
 }
 
 /// In headers, which fit every format, and below a table, which people read.

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reads registers and streets: CSV and GeoJSON.
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
+#include <utility>
 
 #include "base/ascii.hpp"
 #include "base/file_bytes.hpp"

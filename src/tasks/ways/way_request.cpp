@@ -7,6 +7,7 @@
 
 #include "cluxel/error.hpp"
 #include "rdf/map_iris.hpp"
+#include "rdf/ontology/class_labels.hpp"
 #include "rdf/ontology/ontology.hpp"
 #include "rdf/vocabulary.hpp"
 #include "tasks/finite_number.hpp"

@@ -14,8 +14,8 @@ namespace cluxel::rdf {
 
 namespace {
 
-/// LMDB keeps up to 131,071 written pages in memory. When there are more, it writes some to the file and uses their
-/// memory for others, so that lists of pages are wrong.
+/// LMDB keeps up to 131,071 written pages in memory, unless it is made to write them. When there are more, it writes
+/// some to the file and uses their memory for others, so that lists of pages are wrong.
 constexpr std::uint64_t kMaxDirtyPages = 100'000;
 
 std::size_t numberOf(Table index) {
@@ -89,6 +89,12 @@ void IndexDirectories::noteDrafted(Table index) {
   Entry& entry = entries_[numberOf(index)];
   entry.directory = nullptr;
   entry.is_committed = false;
+}
+
+void IndexDirectories::notePagesWritten() {
+  for (Entry& entry : entries_)
+    if (!entry.is_committed) entry.directory = nullptr, entry.dirty_pages = 0;
+  other_pages_ = 0;
 }
 
 void IndexDirectories::noteRewritten(Table index, std::uint64_t keys) {

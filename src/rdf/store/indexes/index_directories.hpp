@@ -41,6 +41,8 @@ class IndexDirectories {
   /// Several threads may call it for different indexes.
   void noteDrafted(Table index);
   void noteBlock(std::size_t bytes) { other_pages_ += 8 + bytes / 2048; }
+  /// To be called after LMDB has written its pages to the file and freed their memory.
+  void notePagesWritten();
   void noteTerms(std::uint64_t count) { other_pages_ += 2 * count; }
 
  private:
