@@ -2,8 +2,6 @@
 // A thread that Python ends is stopped where it asks for the GIL.
 #include "gil.hpp"
 
-#include <cxxabi.h>
-
 #include <chrono>
 #include <thread>
 
