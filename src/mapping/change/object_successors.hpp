@@ -10,9 +10,9 @@ namespace cluxel::mapping {
 
 /// For each object before, its successors, ascending: the objects after with its name, and those with which it shares
 /// at least half of the members of the smaller of the two. Members are shared by seed points. Places count for objects
-/// before that none continues by seeds, for objects after that continue none by seeds, and for one that has most of an
-/// object before of which no other has most by seeds. The objects after have no common members with each other. Cost:
-/// linear in the members.
+/// before that none continues by seeds, and for objects after that continue none by seeds. They also count where seeds
+/// do not tell which object after has most of the members of an object before. The objects after have no common members
+/// with each other. Cost: linear in the members.
 std::vector<std::vector<SharedMembers>> successorsOf(const ObjectList& before, ObjectsOf objects_of,
                                                      const ObjectList& after);
 

@@ -38,7 +38,7 @@ void noteSharedLabels(const std::vector<NamedText>& ontology, ProgressSink& sink
 void inferAnew(rdf::WriteTransaction& transaction, const std::vector<NamedText>& rules, ProgressSink& sink,
                const rdf::InferenceCheck& check) {
   noteIgnoredAxioms(inferClosure(transaction, check).ignored, sink);
-  returnFreeMemory();
+  returnFreeMemory();  // the closure of a large map takes hundreds of megabytes
   InferenceRecord record = runSparqlRules(transaction, rules, check);
   const rdf::QuadReader reader{static_cast<const rdf::ReadTransaction&>(transaction)};
   if (!InferenceGraphs(reader).are_all && record.reason.empty()) {

@@ -30,7 +30,7 @@ NamesOfMap namesOfMap(const rdf::QuadReader& quads, const std::vector<ContentHas
 /// The names that objects have in maps.
 struct NamesInMaps {
   std::map<ContentHash, std::set<std::string>> of_object;
-  std::set<std::string> outdated;  ///< those that only maps give which went into another one
+  std::set<std::string> outdated;  ///< those that objects have only in maps that went into another one
 };
 /// A map that went into another one does not count for an object or for a name that the other has.
 NamesInMaps namesIn(const std::vector<NamesOfMap>& maps);
@@ -41,9 +41,9 @@ NamesInMaps namesIn(const std::vector<NamesOfMap>& maps);
 std::vector<std::optional<Thing>> keptNames(const std::vector<ObjectMembers>& objects,
                                             const std::map<ContentHash, std::vector<Thing>>& names);
 
-/// Adds the histories of maps to `into`, a copy of that with number `base`: their activities, lineage and things. That
-/// of a map that went into another one is left out, since it is in the other's; what it says beyond that is out of
-/// date.
+/// Adds the histories of maps, which are activities, lineage and things, to `into`, a copy of the map with number
+/// `base`. The history of a map that went into another one is left out: the other has it, and what the other does not
+/// have of it is out of date.
 void copyHistories(const std::vector<NamesOfMap>& names, const std::vector<const rdf::QuadReader*>& maps,
                    std::size_t base, rdf::WriteTransaction& into);
 /// Leaves at most one replacement of each thing, and no circle of them: of several the one by which fewest steps lead

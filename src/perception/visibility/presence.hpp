@@ -61,7 +61,7 @@ struct Visibility {
 };
 Visibility visibilityOf(std::span<const ScanVotes> votes);
 
-/// Whether some scans show that the thing was not there. Where no scan hit it, none can.
+/// Whether some scans show that the thing was not there. When no scan hit the thing, nothing shows it.
 bool showAbsence(std::span<const ScanVotes> votes, const Visibility& thing, const PresenceParams& params);
 
 /// The thing was there in the interval with the largest sum of log-odds, and in each earlier or later interval whose

@@ -182,7 +182,8 @@ class Survey {
     kept_cluxels_.add(region, found, unread_);
   }
 
-  /// The places of an object were measured: those that no compared scan hit, by scans that are left out.
+  /// Some scan has hit each place of an object. Where scans are left out of the comparison, all places count as hit, so
+  /// that the share of places seen through is the same whatever is compared.
   perception::PlaceSet hitByOthers(std::size_t places) const {
     perception::PlaceSet hit;
     for (std::size_t place = 0; leaves_scans_out_ && place < places; ++place) hit.set(place);
