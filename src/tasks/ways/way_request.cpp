@@ -57,13 +57,18 @@ class ObjectSelector {
   }
 
  private:
-  /// A mobility is written as a class is: with its prefix, or whatever its case.
-  static std::optional<rdf::Mobility> mobilityNamed(const std::string& name) {
+  /// A mobility is written as a class is: with its prefix, or whatever its case. A class with such a label goes first.
+  std::optional<rdf::Mobility> mobilityNamed(const std::string& name) const {
+    const bool is_label =
+        std::any_of(ontology_.classes.begin(), ontology_.classes.end(), [&](const rdf::OntologyClass& known) {
+          return std::any_of(known.labels.begin(), known.labels.end(),
+                             [&](const rdf::ClassLabel& label) { return rdf::isCalled(label, name); });
+        });
     for (const auto& [local, mobility] :
          {std::pair("Movable", rdf::Mobility::Movable), std::pair("Static", rdf::Mobility::Static)}) {
       const std::string iri = rdf::vocabulary::clx(local);
       if (name == iri || name == "<" + iri + ">" || name == std::string("clx:") + local ||
-          rdf::plainWords(name) == rdf::plainWords(local))
+          (!is_label && rdf::plainWords(name) == rdf::plainWords(local)))
         return mobility;
     }
     return std::nullopt;
