@@ -8,7 +8,6 @@
 #include "base/file_bytes.hpp"
 #include "cluxel/error.hpp"
 #include "rdf/io/rdf_io.hpp"
-#include "rdf/ontology/ontology.hpp"
 #include "rdf/vocabulary.hpp"
 #include "rules/language/rule_loader.hpp"
 
@@ -130,8 +129,12 @@ std::vector<rdf::RdfSource> ontologySources(const std::vector<NamedText>& texts)
   return sources;
 }
 
+rdf::OntologyView ontologyOf(const std::vector<NamedText>& texts) {
+  return ontologyViewOf(ontologySources(texts));
+}
+
 rules::ClassCatalogue classCatalogueOf(const std::vector<NamedText>& ontology) {
-  return rules::catalogueOf(ontologyViewOf(ontologySources(ontology)));
+  return rules::catalogueOf(ontologyOf(ontology));
 }
 
 MapInputs readMapInputs(const MapInputFiles& files, const DataHome& home) {

@@ -15,6 +15,7 @@
 #include "perception/segments/component_tile.hpp"
 #include "perception/segments/contact_tile.hpp"
 #include "perception/segments/scene_assembly.hpp"
+#include "rdf/ontology/ontology.hpp"
 #include "rules/language/class_catalogue.hpp"
 
 namespace cluxel::rdf {
@@ -83,6 +84,8 @@ MapInputs withNamedFiles(MapInputs inputs, const MapInputFiles& files, const Dat
 
 /// The ontology texts as Turtle sources of graph ontology.
 std::vector<rdf::RdfSource> ontologySources(const std::vector<NamedText>& texts);
+/// The classes and properties of the texts. Throws InputError with all faults of the texts.
+rdf::OntologyView ontologyOf(const std::vector<NamedText>& texts);
 /// The classes that rules may name. Throws InputError with all faults of the texts.
 rules::ClassCatalogue classCatalogueOf(const std::vector<NamedText>& ontology);
 

@@ -79,7 +79,7 @@ TEST(BenchClass, IsRefusedForNewRulesWhenNoQuestionWouldFindIt) {
   inputs.rules = {{"bench.rules.yaml", kBenchRules}};
   inputs.rule_roots = 1;
   try {
-    parseNewInputs(inputs);
+    parseNewInputs(inputs, ontologyOf(inputs.ontology));
     FAIL() << "the class is not below clx:Object";
   } catch (const InputError& fault) {
     const std::string text = format(fault.diagnostics());

@@ -261,10 +261,11 @@ BuildReport built(const scan::ScanSet& scans, const MapInputs& inputs, const fs:
   sink.note(describeFiles(complete));
   if (!complete.crs.empty()) sink.note("coordinate system of the map: " + complete.crs);
   checkNewSparqlRules(complete.sparql_rules);
-  noteUnknownNames(complete, sink);
+  const rdf::OntologyView ontology = ontologyOf(complete.ontology);
+  noteUnknownNames(complete.sparql_rules, ontology, sink);
   noteUnusedAxioms(complete.ontology, sink);
-  const ParsedInputs parsed = parseNewInputs(complete);
-  noteSharedLabels(complete.ontology, sink);
+  const ParsedInputs parsed = parseNewInputs(complete, ontology);
+  noteSharedLabels(ontology, sink);
   // A faulty statement is refused before anything is written.
   for (const Statement& statement : statementsAmong(params.statements)) {
     try {

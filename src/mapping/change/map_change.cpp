@@ -255,13 +255,15 @@ ChangeReport appliedTo(const fs::path& file, const std::function<MapInputs(MapIn
   const MapInputs& before = editor.inputs().inputs;
   const bool has_new_queries = inputs.sparql_rules != before.sparql_rules;
   if (has_new_queries) checkNewSparqlRules(inputs.sparql_rules);
-  if (has_new_queries || inputs.ontology != before.ontology) noteUnknownNames(inputs, sink);
-  if (inputs.ontology != before.ontology) {
+  const bool has_new_ontology = inputs.ontology != before.ontology;
+  const rdf::OntologyView ontology = ontologyOf(inputs.ontology);
+  if (has_new_queries || has_new_ontology) noteUnknownNames(inputs.sparql_rules, ontology, sink);
+  if (has_new_ontology) {
     noteUnusedAxioms(inputs.ontology, sink);
-    noteSharedLabels(inputs.ontology, sink);
+    noteSharedLabels(ontology, sink);
   }
-  const bool has_new_rules = inputs.rules != before.rules || inputs.ontology != before.ontology;
-  editor.setInputs(has_new_rules ? parseNewInputs(inputs) : parseInputs(inputs));
+  const bool has_new_rules = inputs.rules != before.rules || has_new_ontology;
+  editor.setInputs(has_new_rules ? parseNewInputs(inputs, ontology) : parseInputs(inputs));
   rdf::WriteTransaction transaction = editor.begin();
   editor.commit(transaction, "rules apply", {}, {});
   return editor.takeReport();

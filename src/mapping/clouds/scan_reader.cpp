@@ -22,7 +22,11 @@ ReadScan ScanReader::take(std::size_t number) {
   begin(number);
   std::future<ReadScan> first = std::move(ahead_.front());
   ahead_.pop_front();
-  return first.get();
+  ReadScan scan = first.get();
+  // While the caller has a small scan as many are read as there are threads. A large one is stored first.
+  constexpr std::size_t kSmall = 500'000;  // points
+  if (scan.scan.cloud.point_count <= kSmall && number + 1 < scans_.size()) begin(number + 1);
+  return scan;
 }
 
 }  // namespace cluxel::mapping

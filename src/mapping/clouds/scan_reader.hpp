@@ -17,7 +17,7 @@ struct ReadScan {
 };
 
 /// Reads and prepares the scans of a set. With two threads or more as many scans are read ahead, on threads of their
-/// own; at most as many are in memory.
+/// own; at most as many are in memory, and one more where scans are small.
 class ScanReader {
  public:
   /// `scans` must outlive it.

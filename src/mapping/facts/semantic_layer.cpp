@@ -40,13 +40,13 @@ std::vector<rules::RuleSource> ruleSources(const std::vector<NamedText>& texts) 
   return sources;
 }
 
-ParsedInputs parsedWith(const MapInputs& inputs, const rules::RuleLoadOptions& options) {
+ParsedInputs parsedWith(const MapInputs& inputs, const rules::ClassCatalogue& catalogue,
+                        const rules::RuleLoadOptions& options) {
   ParsedInputs parsed;
   parsed.inputs = inputs;
   parsed.model = perception::parseModel(inputs.model.text, inputs.model.name);
   perception::checkRanges(inputs.params);
-  parsed.rules =
-      loadRuleTexts(ruleSources(inputs.rules), inputs.rule_roots, classCatalogueOf(inputs.ontology), options).require();
+  parsed.rules = loadRuleTexts(ruleSources(inputs.rules), inputs.rule_roots, catalogue, options).require();
   // The volumes of two cluxels that touch grow towards each other, from seeds that lie in them.
   constexpr double kInside_m = 0.8;
   const double edge_m = 2 * parsed.model.perception.clustering.max_reach_m + kInside_m;
@@ -111,13 +111,13 @@ void writeObjectsSoFar(rdf::WriteTransaction& transaction, const MapInputs& inpu
 }
 
 ParsedInputs parseInputs(const MapInputs& inputs) {
-  return parsedWith(inputs, withCheckedQueries());
+  return parsedWith(inputs, classCatalogueOf(inputs.ontology), withCheckedQueries());
 }
 
-ParsedInputs parseNewInputs(const MapInputs& inputs) {
+ParsedInputs parseNewInputs(const MapInputs& inputs, const rdf::OntologyView& ontology) {
   rules::RuleLoadOptions options = withCheckedNewQueries();
   options.requires_objects = true;
-  return parsedWith(inputs, options);
+  return parsedWith(inputs, rules::catalogueOf(ontology), options);
 }
 
 void inferFacts(rdf::WriteTransaction& transaction, const MapInputs& inputs, ProgressSink& sink,
@@ -155,9 +155,10 @@ SemanticLayer writeSemanticLayer(rdf::WriteTransaction& transaction, const Parse
   const auto policy = threads > 1 ? std::launch::async : std::launch::deferred;
   auto near = std::async(policy, [&] { return nearOf(result.objects, scene.cluxels, object_of); });
   auto wide_tiles = std::async(policy, [&] { return wideTilesOf(scene, stages.summaries(), result.objects); });
+  auto seen_as = std::async(policy, [&] { return sightingsOf(stages.summaries(), object_of); });
   const ObjectPresence presence =
       updatePresence(transaction, rayTargets(scene, result.objects, parsed.rules), Covered::All, clouds, {}, threads);
-  const auto sightings = sightingsOf(stages.summaries(), object_of);
+  const auto sightings = seen_as.get();
   const std::vector<WideTile> wide = wide_tiles.get();
   auto blocks = std::async(policy, [&] {  // nothing below needs them before storeLayers()
     const std::vector<std::uint64_t> hashes = perception::inputHashes(scene, stages.summaries());

@@ -29,7 +29,8 @@ struct ParsedInputs {
 ParsedInputs parseInputs(const MapInputs& inputs);
 /// The same for rules and an ontology that no map has yet: rules of classes that are not below clx:Object are refused.
 /// A map of an earlier program may have such rules, and can still be read and changed.
-ParsedInputs parseNewInputs(const MapInputs& inputs);
+/// `ontology`: ontologyOf() the inputs.
+ParsedInputs parseNewInputs(const MapInputs& inputs, const rdf::OntologyView& ontology);
 
 /// Replaces graph ontology by the inputs' ontology.
 void writeOntology(rdf::WriteTransaction& transaction, const MapInputs& inputs);

@@ -30,9 +30,8 @@ void noteUnusedAxioms(const std::vector<NamedText>& ontology, ProgressSink& sink
   }
 }
 
-void noteSharedLabels(const std::vector<NamedText>& ontology, ProgressSink& sink) {
-  const auto sources = ontologySources(ontology);
-  for (const Diagnostic& warning : sharedLabels(rdf::ontologyViewOf(sources))) sink.note(format(warning));
+void noteSharedLabels(const rdf::OntologyView& ontology, ProgressSink& sink) {
+  for (const Diagnostic& warning : sharedLabels(ontology)) sink.note(format(warning));
 }
 
 void inferAnew(rdf::WriteTransaction& transaction, const std::vector<NamedText>& rules, ProgressSink& sink,

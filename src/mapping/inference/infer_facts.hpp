@@ -29,6 +29,6 @@ bool inferChanges(rdf::WriteTransaction& transaction, const std::vector<NamedTex
 /// Notes the axioms of an ontology from which nothing is inferred, and what to write instead.
 void noteUnusedAxioms(const std::vector<NamedText>& ontology, ProgressSink& sink);
 /// Notes each label that is one of several classes.
-void noteSharedLabels(const std::vector<NamedText>& ontology, ProgressSink& sink);
+void noteSharedLabels(const rdf::OntologyView& ontology, ProgressSink& sink);
 
 }  // namespace cluxel::mapping

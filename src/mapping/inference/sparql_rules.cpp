@@ -175,10 +175,8 @@ void checkNewSparqlRules(const std::vector<NamedText>& rules) {
   }
 }
 
-void noteUnknownNames(const MapInputs& inputs, ProgressSink& sink) {
-  if (inputs.sparql_rules.empty()) return;
-  const rdf::OntologyView ontology = ontologyViewOf(ontologySources(inputs.ontology));
-  for (const NamedText& rule : inputs.sparql_rules)
+void noteUnknownNames(const std::vector<NamedText>& rules, const rdf::OntologyView& ontology, ProgressSink& sink) {
+  for (const NamedText& rule : rules)
     for (const Diagnostic& fault : checkRuleNames(rule.name, rule.text, ontology))
       sink.note(toString(fault.location) + ": " + fault.message);
 }

@@ -18,7 +18,7 @@ void checkSparqlRules(const std::vector<NamedText>& rules);
 /// the history. A map of an earlier program may have such a rule, and can still be changed.
 void checkNewSparqlRules(const std::vector<NamedText>& rules);
 /// Tells of classes and properties in SPARQL rules that the ontology does not know.
-void noteUnknownNames(const MapInputs& inputs, ProgressSink& sink);
+void noteUnknownNames(const std::vector<NamedText>& rules, const rdf::OntologyView& ontology, ProgressSink& sink);
 
 /// Evaluates the rules in order. Each rule is a stratum: it sees the facts of earlier rules and its own, and is
 /// repeated until it derives nothing new. Expects the closure to be complete and keeps it so. Each derived fact names

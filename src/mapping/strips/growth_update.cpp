@@ -42,7 +42,8 @@ class GrowthUpdate {
     for (const auto& [tile, summary] : changes.former_summaries)
       if (!summary && all_.contains(tile)) new_.insert(tile);
     other_ = without(TileSet(changes.tiles), new_);
-    cluxels_ = cluxelsIn(transaction_, new_) + cluxelsIn(transaction_, other_);
+    const auto& at_hand = work.stages.summaries();
+    cluxels_ = cluxelsIn(transaction_, new_, at_hand) + cluxelsIn(transaction_, other_, at_hand);
     strip_.told_clouds = former.clouds;
     strip_.keeps_lists = params_.lists_objects;
     strip_.splits = &splits_, strip_.later = &made_;

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "mapping/map_tables.hpp"
-#include "perception/segments/summary_tile.hpp"
 
 namespace cluxel::mapping {
 
@@ -57,11 +56,15 @@ std::vector<TileSet> stripsOf(const TileSet& tiles, std::size_t count,
   return strips;
 }
 
-std::uint64_t cluxelsIn(const rdf::ReadTransaction& transaction, const TileSet& tiles) {
+std::uint64_t cluxelsIn(const rdf::ReadTransaction& transaction, const TileSet& tiles,
+                        const std::map<TileKey, perception::SummaryTile>& at_hand) {
   std::uint64_t cluxels = 0;
-  for (const TileKey& tile : tiles)
-    if (const auto block = transaction.block(tables::kSummaries, tables::keyOf(tile)))
+  for (const TileKey& tile : tiles) {
+    if (const auto summary = at_hand.find(tile); summary != at_hand.end())
+      cluxels += summary->second.size();
+    else if (const auto block = transaction.block(tables::kSummaries, tables::keyOf(tile)))
       cluxels += perception::cluxelsIn(*block);
+  }
   return cluxels;
 }
 

@@ -5,8 +5,10 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <vector>
 
+#include "perception/segments/summary_tile.hpp"
 #include "perception/tile.hpp"
 #include "rdf/file/environment.hpp"
 
@@ -16,8 +18,9 @@ namespace cluxel::mapping {
 std::vector<perception::TileSet> stripsOf(const perception::TileSet& tiles, std::size_t count,
                                           const std::function<std::uint64_t(const perception::TileKey&)>& weight_of);
 
-/// How many cluxels the tiles have.
-std::uint64_t cluxelsIn(const rdf::ReadTransaction& transaction, const perception::TileSet& tiles);
+/// How many cluxels the tiles have. Those that are not among `at_hand` are read.
+std::uint64_t cluxelsIn(const rdf::ReadTransaction& transaction, const perception::TileSet& tiles,
+                        const std::map<perception::TileKey, perception::SummaryTile>& at_hand);
 
 /// As stripsOf(), of tiles whose layers are to be decided. They have some `cluxels`; a map of `whole_cluxels` could be
 /// decided at once.

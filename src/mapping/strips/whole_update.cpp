@@ -18,7 +18,6 @@
 #include "mapping/window/former_objects.hpp"
 #include "mapping/window/map_window.hpp"
 #include "mapping/window/window_presence.hpp"
-#include "perception/segments/summary_tile.hpp"
 #include "rdf/vocabulary.hpp"
 #include "rules/decide/local_reach.hpp"
 
@@ -33,19 +32,6 @@ void eraseAll(rdf::WriteTransaction& transaction, std::string_view table) {
   std::vector<std::string> keys;
   transaction.forEachBlock(table, "", [&](std::string_view key, std::string_view) { keys.emplace_back(key); });
   for (const std::string& key : keys) transaction.eraseBlock(table, key);
-}
-
-/// Only tiles that are not at hand are read.
-std::uint64_t storedCluxels(const LayerWork& work) {
-  const auto& at_hand = work.stages.summaries();
-  std::uint64_t cluxels = 0;
-  for (const TileKey& tile : storedTiles(work.transaction)) {
-    if (const auto summary = at_hand.find(tile); summary != at_hand.end())
-      cluxels += summary->second.size();
-    else if (const auto block = work.transaction.block(tables::kSummaries, tables::keyOf(tile)))
-      cluxels += perception::cluxelsIn(*block);
-  }
-  return cluxels;
 }
 
 class StripUpdate {
@@ -179,7 +165,7 @@ bool makesWideObjectsButGround(const rules::RuleSet& rules) {
 std::optional<SemanticUpdate> updateInStrips(const LayerWork& work) {
   const std::optional<SemanticState> former = storedSemanticState(work.transaction);
   if (!canBeInStrips(work)) return std::nullopt;
-  const std::uint64_t cluxels = storedCluxels(work);
+  const std::uint64_t cluxels = cluxelsIn(work.transaction, storedTiles(work.transaction), work.stages.summaries());
   if (cluxels <= work.params.whole_cluxels) return std::nullopt;
   if (former) {
     const MapInputs inputs = storedInputs(work.transaction);

@@ -36,7 +36,7 @@ bool isLarge(const LayerWork& work, const OutputChanges& changes) {
   const perception::TileSet all = storedTiles(work.transaction);
   const std::size_t around = perception::withRing(changes.tiles, all).size();
   return static_cast<double>(around) > kLargeShare * static_cast<double>(all.size()) &&
-         cluxelsIn(work.transaction, changes.tiles) > work.params.whole_cluxels;
+         cluxelsIn(work.transaction, changes.tiles, work.stages.summaries()) > work.params.whole_cluxels;
 }
 
 }  // namespace

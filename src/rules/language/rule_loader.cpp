@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <set>
 
-#include "base/file_bytes.hpp"
 #include "base/nearest_name.hpp"
 #include "rdf/vocabulary.hpp"
 #include "rules/language/rule_definitions.hpp"
@@ -276,25 +275,22 @@ LoadedRules load(const std::vector<std::string>& roots, const FindSource& findSo
   return loaded;
 }
 
-FoundSource findFile(const std::string& name, const std::string& from_key) {
-  FoundSource found;
-  std::filesystem::path path = name;
-  if (path.is_relative() && !from_key.empty()) path = std::filesystem::path(from_key).parent_path() / path;
-  // Symbolic links are not resolved: includes are relative to the link, as they are in a map's stored texts.
-  found.key = std::filesystem::absolute(path).lexically_normal().string();
-  found.shown = path.lexically_normal().string();
-  try {
-    found.text = readFile(path);
-  } catch (const InputError& fault) {
-    found.fault = fault.diagnostics().front().message;
-  }
-  return found;
-}
-
 std::vector<std::string> namesOf(std::span<const std::filesystem::path> paths) {
   std::vector<std::string> names;
   for (const auto& path : paths) names.push_back(path.string());
   return names;
+}
+
+/// A file without the word "include" includes nothing: its YAML need not be read to know that. Nothing when a file has
+/// the word or cannot be read.
+std::optional<std::vector<RuleSource>> sourcesWithoutIncludes(std::span<const std::filesystem::path> paths) {
+  std::vector<RuleSource> sources;
+  for (const std::string& name : namesOf(paths)) {
+    FoundSource found = findFile(name, "");
+    if (!found.fault.empty() || found.text.find("include") != std::string::npos) return std::nullopt;
+    sources.push_back({std::move(found.shown), std::move(found.text)});
+  }
+  return sources;
 }
 
 }  // namespace
@@ -310,6 +306,7 @@ LoadedRules loadRules(std::span<const std::filesystem::path> paths, const ClassC
 }
 
 std::optional<std::vector<RuleSource>> readRuleSources(std::span<const std::filesystem::path> paths) {
+  if (auto alone = sourcesWithoutIncludes(paths)) return alone;
   FaultList faults;
   GatheredRules gathered = gatherRules(namesOf(paths), findFile, faults);
   if (faults.errorCount() > 0) return std::nullopt;

@@ -4,7 +4,9 @@
 #include "rules/language/rule_sources.hpp"
 
 #include <algorithm>
+#include <filesystem>
 
+#include "base/file_bytes.hpp"
 #include "base/nearest_name.hpp"
 #include "rules/language/rule_reading.hpp"
 
@@ -244,6 +246,21 @@ class Gatherer {
 };
 
 }  // namespace
+
+FoundSource findFile(const std::string& name, const std::string& from_key) {
+  FoundSource found;
+  std::filesystem::path path = name;
+  if (path.is_relative() && !from_key.empty()) path = std::filesystem::path(from_key).parent_path() / path;
+  // Symbolic links are not resolved: includes are relative to the link, as they are in a map's stored texts.
+  found.key = std::filesystem::absolute(path).lexically_normal().string();
+  found.shown = path.lexically_normal().string();
+  try {
+    found.text = readFile(path);
+  } catch (const InputError& fault) {
+    found.fault = fault.diagnostics().front().message;
+  }
+  return found;
+}
 
 GatheredRules gatherRules(const std::vector<std::string>& roots, const FindSource& findSource, FaultList& faults) {
   Gatherer gatherer(findSource, faults);

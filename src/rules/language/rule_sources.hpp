@@ -32,6 +32,9 @@ struct FoundSource {
 };
 using FindSource = std::function<FoundSource(const std::string& name, const std::string& from_key)>;
 
+/// Finds a file beside the including one, whose path is `from_key`.
+FoundSource findFile(const std::string& name, const std::string& from_key);
+
 GatheredRules gatherRules(const std::vector<std::string>& roots, const FindSource& findSource, FaultList& faults);
 
 }  // namespace cluxel::rules
