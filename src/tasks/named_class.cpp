@@ -130,6 +130,22 @@ std::string classNamed(const mapping::MapReader& map, const std::string& written
   return classNamed(map, ontologyViewOf(map.quads()), written);
 }
 
+std::optional<rdf::Mobility> mobilityNamed(const rdf::OntologyView& ontology, const std::string& written) {
+  const bool is_label =
+      std::any_of(ontology.classes.begin(), ontology.classes.end(), [&](const rdf::OntologyClass& known) {
+        return std::any_of(known.labels.begin(), known.labels.end(),
+                           [&](const rdf::ClassLabel& label) { return rdf::isCalled(label, written); });
+      });
+  for (const auto& [local, mobility] :
+       {std::pair("Movable", rdf::Mobility::Movable), std::pair("Static", rdf::Mobility::Static)}) {
+    const std::string iri = rdf::vocabulary::clx(local);
+    if (written == iri || written == "<" + iri + ">" || written == std::string("clx:") + local ||
+        (!is_label && rdf::plainWords(written) == rdf::plainWords(local)))
+      return mobility;
+  }
+  return std::nullopt;
+}
+
 void requireClassOfObjects(const rdf::OntologyView& ontology, const std::string& class_iri) {
   const std::string object = rdf::vocabulary::clx("Object");
   const auto isOfObjects = [&](const rdf::OntologyClass& known) {

@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 
 #include "mapping/map_reader.hpp"
@@ -28,6 +29,10 @@ std::string classNamed(const rdf::OntologyView& ontology, const std::string& wri
 /// The same with the prefixes of the map's ontology and rules. `ontology`: that of the map.
 std::string classNamed(const mapping::MapReader& map, const rdf::OntologyView& ontology, const std::string& written);
 std::string classNamed(const mapping::MapReader& map, const std::string& written);
+
+/// "clx:Movable", "movable", "Static": a mobility is written as a class is. A class that has the word as a label goes
+/// first; then nothing is returned.
+std::optional<rdf::Mobility> mobilityNamed(const rdf::OntologyView& ontology, const std::string& written);
 
 /// For a class of which no object of the map is. Throws Error (InvalidArgument) when none can be: it is not below
 /// clx:Object, and neither is a class below it, as of ways, parts and places.

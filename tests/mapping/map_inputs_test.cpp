@@ -99,14 +99,14 @@ TEST(MapInputs, WithAxiomsFromWhichNothingIsInferredAreNoted) {
 TEST(MapInputs, WithLabelsOfSeveralClassesAreNoted) {
   Notes notes;
   std::vector<NamedText> ontology = shippedInputs().ontology;
-  noteSharedLabels(ontology, notes);
+  noteSharedLabels(ontologyOf(ontology), notes);
   EXPECT_TRUE(notes.texts.empty()) << notes.texts.front();
   ontology.push_back(
       {"own.ttl",
        "@prefix owl: <http://www.w3.org/2002/07/owl#> . @prefix my: <http://x/> .\n"
        "@prefix rdfs: <http://www.w3.org/2000/01/rdf-schema#> .\n"
        "my:A a owl:Class ; rdfs:label \"Doppelt\"@en . my:B a owl:Class ; rdfs:label \"Doppelt\"@de .\n"});
-  noteSharedLabels(ontology, notes);
+  noteSharedLabels(ontologyOf(ontology), notes);
   ASSERT_EQ(notes.texts.size(), 1U);
   EXPECT_NE(notes.texts[0].find("warning: the label 'Doppelt' is that of 2 classes, <http://x/A>, <http://x/B>"),
             std::string::npos);
@@ -115,12 +115,12 @@ TEST(MapInputs, WithLabelsOfSeveralClassesAreNoted) {
 TEST(MapInputs, WithNamesThatTheOntologyLacksAreNoted) {
   Notes notes;
   MapInputs inputs = shippedInputs();
-  noteUnknownNames(inputs, notes);
+  noteUnknownNames(inputs.sparql_rules, ontologyOf(inputs.ontology), notes);
   EXPECT_TRUE(notes.texts.empty()) << notes.texts.front();
   inputs.sparql_rules = {{"my.rq",
                           "PREFIX clx: <https://w3id.org/cluxel/ontology#>\n"
                           "CONSTRUCT { ?t a clx:Treee } WHERE { ?t a clx:Tree }"}};
-  noteUnknownNames(inputs, notes);
+  noteUnknownNames(inputs.sparql_rules, ontologyOf(inputs.ontology), notes);
   ASSERT_EQ(notes.texts.size(), 1U);
   EXPECT_NE(notes.texts.front().find("my.rq:2:"), std::string::npos) << notes.texts.front();
   EXPECT_NE(notes.texts.front().find("knows no class clx:Treee; did you mean 'Tree'"), std::string::npos);

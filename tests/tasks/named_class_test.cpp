@@ -69,6 +69,20 @@ TEST(NamedClass, IsALocalNameAnIriOrALabel) {
   EXPECT_THAT(faultOf("Treee"), HasSubstr("did you mean 'Tree'"));
 }
 
+TEST(NamedClass, OfAMobilityIsNoneWhereAClassHasTheWordAsALabel) {
+  const rdf::OntologyView without = twoVocabularies();
+  const rdf::OntologyView with = viewOf({{kTown + "Fixed", {{"en", "static"}}}});
+  for (const std::string& written : {std::string("static"), std::string("STATIC"), std::string("Static")}) {
+    EXPECT_EQ(mobilityNamed(without, written), rdf::Mobility::Static) << written;
+    EXPECT_EQ(mobilityNamed(with, written), std::nullopt) << written;
+    EXPECT_EQ(classNamed(with, written), kTown + "Fixed") << written;
+  }
+  for (const std::string& written : {std::string("clx:Static"), clx("Static"), "<" + clx("Static") + ">"})
+    EXPECT_EQ(mobilityNamed(with, written), rdf::Mobility::Static) << written;
+  EXPECT_EQ(mobilityNamed(with, "movable"), rdf::Mobility::Movable);
+  EXPECT_EQ(mobilityNamed(with, "mobile"), std::nullopt);
+}
+
 TEST(NamedClass, IsALabelWhateverTheCaseOfItsLetters) {
   const rdf::OntologyView view = viewOf(
       {{clx("Building"), {{"de", "Gebäude"}}}, {clx("StreetSign"), {{"de", "Straßenschild"}}}, {kTown + "Ёлка", {}}});

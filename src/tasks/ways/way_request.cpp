@@ -7,7 +7,6 @@
 
 #include "cluxel/error.hpp"
 #include "rdf/map_iris.hpp"
-#include "rdf/ontology/class_labels.hpp"
 #include "rdf/ontology/ontology.hpp"
 #include "rdf/vocabulary.hpp"
 #include "tasks/finite_number.hpp"
@@ -26,7 +25,7 @@ class ObjectSelector {
   explicit ObjectSelector(const mapping::MapReader& map) : map_(map), ontology_(ontologyViewOf(map.quads())) {}
 
   void mark(const std::string& name, std::vector<bool>& marked) const {
-    const std::optional<rdf::Mobility> mobility = mobilityNamed(name);
+    const std::optional<rdf::Mobility> mobility = mobilityNamed(ontology_, name);
     const std::string iri = mobility ? std::string() : classNamed(map_, ontology_, name);
     for (std::size_t i = 0; i < map_.objects().size(); ++i) {
       const std::string& class_iri = map_.objects()[i].class_iri;
@@ -40,7 +39,7 @@ class ObjectSelector {
   std::vector<std::uint8_t> cells(const std::string& name, const TerrainGrid& terrain,
                                   const std::vector<bool>& is_left_out) const {
     std::vector<std::uint8_t> cells(terrain.frame.size(), 0);
-    if (mobilityNamed(name)) {
+    if (mobilityNamed(ontology_, name)) {
       std::vector<bool> marked(map_.objects().size(), false);
       mark(name, marked);
       for (std::uint32_t cell = 0; cell < cells.size(); ++cell)
@@ -57,23 +56,6 @@ class ObjectSelector {
   }
 
  private:
-  /// A mobility is written as a class is: with its prefix, or whatever its case. A class with such a label goes first.
-  std::optional<rdf::Mobility> mobilityNamed(const std::string& name) const {
-    const bool is_label =
-        std::any_of(ontology_.classes.begin(), ontology_.classes.end(), [&](const rdf::OntologyClass& known) {
-          return std::any_of(known.labels.begin(), known.labels.end(),
-                             [&](const rdf::ClassLabel& label) { return rdf::isCalled(label, name); });
-        });
-    for (const auto& [local, mobility] :
-         {std::pair("Movable", rdf::Mobility::Movable), std::pair("Static", rdf::Mobility::Static)}) {
-      const std::string iri = rdf::vocabulary::clx(local);
-      if (name == iri || name == "<" + iri + ">" || name == std::string("clx:") + local ||
-          (!is_label && rdf::plainWords(name) == rdf::plainWords(local)))
-        return mobility;
-    }
-    return std::nullopt;
-  }
-
   const mapping::MapReader& map_;
   rdf::OntologyView ontology_;
 };
