@@ -4,6 +4,7 @@
 
 #include <array>
 #include <atomic>
+#include <cerrno>
 #include <map>
 #include <random>
 #include <thread>
@@ -11,6 +12,7 @@
 
 #include "rdf/file/commit_stamps.hpp"
 #include "rdf/file/lmdb_environment.hpp"
+#include "rdf/file/lmdb_handles.hpp"
 #include "rdf/file/lock_file.hpp"
 #include "rdf/file/map_check.hpp"
 #include "rdf/file/space/layer_sizes.hpp"
@@ -279,6 +281,23 @@ TEST_F(MapFile, ATemporaryOneLeavesNothingBehind) {
   }
   ::unsetenv("TMPDIR");
   EXPECT_TRUE(fs::is_empty(folder_.path()));
+}
+
+TEST(StoreErrors, TellWhatTheSystemRefused) {
+  const auto told = [](int code) {
+    try {
+      failStore("there.clx", code, "open the map");
+    } catch (const Error& fault) {
+      EXPECT_EQ(fault.kind(), ErrorKind::StoreUnavailable);
+      return std::string(fault.what());
+    }
+  };
+  EXPECT_EQ(told(EROFS),
+            "there.clx: cannot open the map: the file system is read-only; write to another one, or mount it for "
+            "writing");
+  EXPECT_THAT(told(EACCES), HasSubstr("permission denied; check the rights"));
+  EXPECT_THAT(told(ENOMEM), HasSubstr("no address space is left; raise the limit"));
+  EXPECT_THAT(told(EDQUOT), HasSubstr("free some space"));
 }
 
 }  // namespace

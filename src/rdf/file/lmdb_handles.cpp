@@ -28,7 +28,9 @@ std::string explain(int code, std::string_view doing) {
     case MDB_MAP_FULL:
     case MDB_MAP_RESIZED:
     case ENOMEM:
-      return attempt + "no address space is left; raise the limit (ulimit -v)";
+      return attempt +
+             "no address space is left; raise the limit (ulimit -v): each map, also a temporary one, takes its length "
+             "and room to grow";
     case MDB_READERS_FULL:
       return attempt + "too many readers are at work; wait for some to end";
     case EIO:  // LMDB reports a short write as EIO
@@ -38,9 +40,10 @@ std::string explain(int code, std::string_view doing) {
       return attempt +
              "no space is left on the disk, the file may not become larger (ulimit -f), or the disk fails; the map "
              "keeps its last commit: free some space and run again";
+    case EROFS:
+      return attempt + "the file system is read-only; write to another one, or mount it for writing";
     case EACCES:
     case EPERM:
-    case EROFS:
       return attempt + "permission denied; check the rights of the file and its folder";
     case ENOENT:
       return attempt + "there is no such file";
