@@ -33,4 +33,10 @@ rules::KnownSplits storedSplits(const rdf::ReadTransaction& transaction) {
   return bytes ? rules::KnownSplits(*bytes) : rules::KnownSplits();
 }
 
+rules::KnownSplits storedSplitsIfFew(const rdf::ReadTransaction& transaction) {
+  constexpr std::size_t kFew = 4 << 20;  // bytes; a campus of 2.4 million points has 0.4 million
+  const auto bytes = transaction.block(tables::kMeta, kSplitsKey);
+  return bytes && bytes->size() <= kFew ? rules::KnownSplits(*bytes) : rules::KnownSplits();
+}
+
 }  // namespace cluxel::mapping

@@ -13,5 +13,8 @@ void storeSplits(rdf::WriteTransaction& transaction, const rules::KnownSplits& s
 void copySplits(rdf::WriteTransaction& transaction, const rdf::ReadTransaction& other);
 /// Knows nothing for a map of a version that had none.
 rules::KnownSplits storedSplits(const rdf::ReadTransaction& transaction);
+/// For a run over a part of the map: the same, but nothing where the map knows so many that reading them takes longer
+/// than they save.
+rules::KnownSplits storedSplitsIfFew(const rdf::ReadTransaction& transaction);
 
 }  // namespace cluxel::mapping

@@ -13,6 +13,7 @@
 #include "mapping/facts/ask_replay.hpp"
 #include "mapping/facts/semantic_layer.hpp"
 #include "mapping/map_part.hpp"
+#include "mapping/splits_store.hpp"
 #include "mapping/statements/applied_statements.hpp"
 #include "rdf/vocabulary.hpp"
 #include "rules/decide/local_reach.hpp"
@@ -92,17 +93,18 @@ std::optional<rules::PartRun> runAround(const mapping::MapReader& map, const Exp
     int rings;
     std::vector<double> margins_m;  ///< smaller ones were tried with fewer rings
   };
+  rules::KnownSplits splits = mapping::storedSplitsIfFew(map.transaction());
   for (const Around& around : {Around{1, {kAll}}, Around{2, {kAll}}, Around{3, {30, kAll}}}) {
     std::optional<mapping::MapPart> part = partAround(map, what, around.rings);
     if (!part) break;
     const auto primitives = primitivesIn(part->scene, part->objects, what);
     const auto scene = std::make_shared<const perception::Scene>(std::move(part->scene));
-    if (auto run = runInPart(scene, rules, {part->traces, part->objects}, primitives, {around.margins_m, 1}))
+    if (auto run = runInPart(scene, rules, {part->traces, part->objects, &splits}, primitives, {around.margins_m, 1}))
       return run;
   }
   const std::vector<std::uint64_t> traces = map.decisionTraces();
   const std::vector<rules::SemanticObject> by_rules = map.objectsByRules();
-  return runInPart(map.scene(), rules, {traces, by_rules}, primitivesIn(map.scene(), map.objects(), what));
+  return runInPart(map.scene(), rules, {traces, by_rules, &splits}, primitivesIn(map.scene(), map.objects(), what));
 }
 
 /// An explanation, with the part of the scene that its numbers refer to when it is not the whole.
@@ -176,6 +178,7 @@ std::optional<WhyNotOfThing> whyNotAround(const mapping::MapReader& map, const r
   if (!reach_m || *reach_m > perception::kTileSize_m) return std::nullopt;
   const mapping::ThingPlace place =
       what.object ? map.placeOfObject(*what.object) : map.placeOfPrimitive(*what.primitive);
+  rules::KnownSplits splits = mapping::storedSplitsIfFew(map.transaction());
   // The first holds the narrowest seam next to the thing; the wider ones were chosen, not measured.
   for (const mapping::LayersAround& around : {mapping::LayersAround{4, 0}, {7, 2}, {13, 4}}) {
     auto part = map.partOfLayers(place, rules, *reach_m, around);
@@ -185,9 +188,9 @@ std::optional<WhyNotOfThing> whyNotAround(const mapping::MapReader& map, const r
     std::vector<char> is_dirty(part->scene.primitives.size(), 0);
     for (const perception::PrimitiveIndex primitive : primitives) is_dirty[primitive] = 1;
     auto said = considerIn({part->scene, is_dirty, part->is_open, {}, {part->traces.begin(), part->traces.end()}},
-                           rules, {}, class_iri, *reach_m);
+                           rules, {.splits = &splits}, class_iri, *reach_m);
     if (!said) continue;
-    const auto run = runInPart(part->scene, rules, {part->traces, part->objects}, primitives, {{16, kAll}, 1});
+    const auto run = runInPart(part->scene, rules, {part->traces, part->objects, &splits}, primitives, {{16, kAll}, 1});
     if (!run) continue;
     const auto id = what.object ? std::optional(idByRules(map, *what.object)) : std::nullopt;
     const rules::SemanticObject* owner = ownerOf(run->result.objects, run->primitives, id);

@@ -132,6 +132,7 @@ std::optional<PartRun> runInPart(const std::shared_ptr<const perception::Scene>&
         is_all ? scene : std::make_shared<const perception::Scene>(partOf(*scene, kept)), search.numbersIn(kept), {}};
     ReasoningContext probing;
     probing.probes = run.primitives;
+    probing.splits = whole.splits;
     run.result = reason(*run.part, rules, probing);
     if (search.agrees(kept, *run.part, run.result)) return run;
     before = std::move(kept);

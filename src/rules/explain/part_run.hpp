@@ -14,6 +14,7 @@ namespace cluxel::rules {
 struct WholeRun {
   const std::vector<std::uint64_t>& traces;  ///< ReasoningResult::traces
   const std::vector<SemanticObject>& objects;
+  KnownSplits* splits = nullptr;  ///< as in ReasoningContext; learns those of the part
 };
 
 /// A run with probes at some primitives. All numbers refer to the part.
