@@ -8,6 +8,7 @@
 #include "perception/segments/scene_part.hpp"
 #include "rules/box_world.hpp"
 #include "rules/explain/part_run.hpp"
+#include "rules/objects/known_splits.hpp"
 
 namespace cluxel::testing {
 
@@ -61,6 +62,27 @@ TEST(PartRun, ExplainsObjectsAndPrimitivesAsTheWholeRunDoes) {
               textOf(explain(street.scene, street.rules, {}, i), street.rules, street.scene));
   }
   EXPECT_GE(4 * in_part, 3 * asked) << "most things are explained from a part";
+}
+
+TEST(PartRun, TakesKnownSplitsOfCrownsAndTellsTheSame) {
+  const StreetRun street;
+  KnownSplits made;
+  reason(street.scene, street.rules, {.splits = &made});
+  ASSERT_GT(made.count(), 0U) << "a street of trees whose crowns touch";
+  std::size_t reused = 0;
+  for (const SemanticObject& object : street.result.objects) {
+    KnownSplits known(made.stored());
+    const auto with =
+        runInPart(street.scene, street.rules, {street.traces, street.result.objects, &known}, primitivesOf(object));
+    const auto without = runInPart(street.scene, street.rules, street.whole(), primitivesOf(object));
+    ASSERT_EQ(with.has_value(), without.has_value());
+    reused += known.reused();
+    if (!with) continue;
+    EXPECT_EQ(with->result.traces, without->result.traces);
+    EXPECT_EQ(textOf(*explanationIn(with->result, street.rules, object.id), street.rules, *with->part),
+              textOf(*explanationIn(without->result, street.rules, object.id), street.rules, *without->part));
+  }
+  EXPECT_GT(reused, 0U);
 }
 
 /// A tree rule that looks far from its trunk, and a crown that it finds.
