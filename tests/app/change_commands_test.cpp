@@ -214,9 +214,18 @@ TEST_F(ChangeCommands, WatchAddsWhatArrives) {
   ASSERT_EQ(first.code, 0) << first.err;
   std::istringstream lines(first.out);
   std::size_t scans = 0;
-  for (std::string line; std::getline(lines, line);) scans = Json::parse(line).at("scans");
+  for (std::string line; std::getline(lines, line);) {
+    const Json commit = Json::parse(line);
+    scans = commit.at("scans");
+    EXPECT_GT(commit.at("tiles_decided"), 0) << line;
+    EXPECT_EQ(commit.at("objects_added") == commit.at("objects"), commit.at("added") == scans) << "by the build alone";
+  }
   EXPECT_EQ(scans, 4U) << "of the last commit, each of which is one line: " << first.out;
   EXPECT_TRUE(canonical("watched.clx") == canonical("whole.clx"));
+  fs::remove(path("watched.clx"));
+  const Outcome told = run(watch);
+  EXPECT_NE(told.out.find(" redecided, 0 gone, 0 from splits, 0 joined; "), std::string::npos) << told.out;
+  EXPECT_NE(told.out.find(" tiles decided)"), std::string::npos) << told.out;
   EXPECT_EQ(run(watch).code, 3) << "nothing was added";
   EXPECT_EQ(run(watch + " --model oakland --rules outdoor.rules.yaml").code, 3) << "those of the map";
   expectError(run(watch + " --model campus"), 2, "change the map with 'cluxel rules apply'");

@@ -21,6 +21,34 @@ TEST_F(FolderWatch, GrowsTheMapToTheOneOfAllScans) {
   EXPECT_TRUE(canonicalText(map()) == builtText(campus->files(), *inputs));
 }
 
+TEST_F(FolderWatch, TellsOfObjectsWhatExtendTells) {
+  const fs::path other = folder.path() / "other.clx";
+  buildMap(scansOf({campus->files()[0]}), *inputs, other, {}, silence());
+  const std::size_t first_objects = MapReader(other).summary().objects;
+  const ChangeReport expected = extendMap(other, scansOf({campus->files()[1]}), {}, silence());
+  arrive(0);
+  std::vector<WatchCommit> commits;
+  WatchCallbacks callbacks;
+  callbacks.inputs = [] { return *inputs; };
+  callbacks.committed = [&](const WatchCommit& commit) {
+    commits.push_back(commit);
+    if (commits.size() == 1) arrive(1);
+  };
+  callbacks.is_stopped = [&] { return commits.size() == 2; };
+  watchFolder(scans(), map(), {.threads = 1, .interval_s = 0.05, .idle_s = 120}, callbacks, notes);
+  ASSERT_EQ(commits.size(), 2U);
+  EXPECT_EQ(commits[0].objects_added, first_objects) << "all objects of a build are new";
+  EXPECT_GT(commits[0].tiles_decided, 0U);
+  EXPECT_FALSE(expected.objects.isEmpty());
+  EXPECT_EQ(commits[1].objects_added, expected.objects.added.size());
+  EXPECT_EQ(commits[1].objects_changed, expected.objects.changed.size());
+  EXPECT_EQ(commits[1].objects_redecided, expected.objects.redecided.size());
+  EXPECT_EQ(commits[1].objects_gone, expected.objects.gone.size());
+  EXPECT_EQ(commits[1].objects_split, expected.objects.split.size());
+  EXPECT_EQ(commits[1].objects_joined, expected.objects.joined.size());
+  EXPECT_EQ(commits[1].tiles_decided, expected.tiles_decided);
+}
+
 TEST_F(FolderWatch, TakesOnlyWhatIsNewAfterARestart) {
   arrive(0);
   watch(1, [](std::size_t) {});
@@ -104,7 +132,7 @@ TEST_F(FolderWatch, LeavesAScanWhereItIsWhenACopyOfItHasAnotherPose) {
   EXPECT_THAT(notes.all, ::testing::Contains(::testing::HasSubstr("is the same scan as another file of the folder")));
   // While it watches, the copy goes, and the pose of the scan is corrected.
   bool is_moved = false;
-  callbacks.committed = [&](std::size_t, std::size_t, std::size_t) { is_moved = true; };
+  callbacks.committed = [&](const WatchCommit&) { is_moved = true; };
   std::size_t looks = 0;
   callbacks.is_stopped = [&] {
     if (++looks == 6) {

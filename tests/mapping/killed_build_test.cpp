@@ -177,9 +177,9 @@ TEST_F(KilledBuild, AWatchGoesOn) {
         std::size_t in_map = committedText(map()) == all ? 3 : 0;
         WatchCallbacks callbacks;
         callbacks.inputs = [] { return *inputs; };
-        callbacks.committed = [&](std::size_t, std::size_t total, std::size_t) {
-          in_map = total;
-          if (total == 2) arrive(2);
+        callbacks.committed = [&](const WatchCommit& commit) {
+          in_map = commit.scans;
+          if (in_map == 2) arrive(2);
         };
         callbacks.is_stopped = [&] { return in_map == 3; };
         if (committedText(map()) == two) arrive(2);  // it was killed before it told of its commit

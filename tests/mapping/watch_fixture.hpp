@@ -60,7 +60,7 @@ class FolderWatch : public ::testing::Test {
     WatchCallbacks callbacks;
     std::size_t in_map = 0;
     callbacks.inputs = [] { return *inputs; };
-    callbacks.committed = [&](std::size_t, std::size_t total, std::size_t) { each(in_map = total); };
+    callbacks.committed = [&](const WatchCommit& commit) { each(in_map = commit.scans); };
     callbacks.is_stopped = [&] { return in_map >= count; };
     return watchFolder(scans(), map(), {.threads = 1, .interval_s = 0.05, .idle_s = 120}, callbacks, notes);
   }
@@ -70,7 +70,7 @@ class FolderWatch : public ::testing::Test {
     WatchCallbacks callbacks;
     callbacks.inputs = [] { return *inputs; };
     callbacks.is_stopped = isDone;
-    callbacks.committed = [&](std::size_t, std::size_t total, std::size_t) { scans_in_map = total, ++commits; };
+    callbacks.committed = [&](const WatchCommit& commit) { scans_in_map = commit.scans, ++commits; };
     return watchFolder(scans(), map(), {.threads = 1, .interval_s = 0.05, .idle_s = 120}, callbacks, notes);
   }
   /// Watches until nothing happens any more.

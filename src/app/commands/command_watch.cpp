@@ -19,11 +19,26 @@ struct WatchOptions {
   mapping::WatchParams params;
 };
 
-void report(const WatchOptions& options, std::size_t added, std::size_t scans, std::size_t objects, bool as_json) {
+void report(const WatchOptions& options, const mapping::WatchCommit& commit, bool as_json) {
   if (as_json)
-    printJsonLine(Json{{"map", options.map.string()}, {"added", added}, {"scans", scans}, {"objects", objects}});
+    printJsonLine(Json{{"map", options.map.string()},
+                       {"added", commit.added},
+                       {"scans", commit.scans},
+                       {"objects", commit.objects},
+                       {"tiles_decided", commit.tiles_decided},
+                       {"objects_added", commit.objects_added},
+                       {"objects_changed", commit.objects_changed},
+                       {"objects_redecided", commit.objects_redecided},
+                       {"objects_gone", commit.objects_gone},
+                       {"objects_split", commit.objects_split},
+                       {"objects_joined", commit.objects_joined}});
   else
-    std::printf("%s: %zu new, %zu scans, %zu objects\n", options.map.c_str(), added, scans, objects);
+    std::printf(
+        "%s: %zu new, %zu scans, %zu objects (%zu added, %zu changed, %zu redecided, %zu gone, %zu from splits, %zu "
+        "joined; %zu tiles decided)\n",
+        options.map.c_str(), commit.added, commit.scans, commit.objects, commit.objects_added, commit.objects_changed,
+        commit.objects_redecided, commit.objects_gone, commit.objects_split, commit.objects_joined,
+        commit.tiles_decided);
   std::fflush(stdout);
 }
 
@@ -46,9 +61,7 @@ ExitCode watch(const WatchOptions& options, Session& session) {
   params.scans = options.scans.params();
   mapping::WatchCallbacks callbacks;
   callbacks.inputs = [&] { return readMapInputs(options.files, session.dataHome()); };
-  callbacks.committed = [&](std::size_t added, std::size_t scans, std::size_t objects) {
-    report(options, added, scans, objects, session.json);
-  };
+  callbacks.committed = [&](const mapping::WatchCommit& commit) { report(options, commit, session.json); };
   const StopSignals signals;
   bool is_stopped = false;
   callbacks.is_stopped = [&] { return is_stopped = is_stopped || signals.arrived(); };

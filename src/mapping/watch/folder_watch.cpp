@@ -199,7 +199,11 @@ class Watch {
       const BuildReport report = buildMap(scans, callbacks_.inputs(), map_, {.threads = params_.threads}, sink_);
       given = report.given;
       is_built_ = true;
-      tell(report.scans, report.scans, report.scans, report.objects);
+      tell(report.scans, {.added = report.scans,
+                          .scans = report.scans,
+                          .objects = report.objects,
+                          .tiles_decided = report.tiles,
+                          .objects_added = report.objects});
     } else {
       if (!is_built_) rememberClouds(storedClouds(readOf(map_)));
       is_built_ = true;
@@ -289,12 +293,15 @@ class Watch {
     return true;
   }
 
-  void tell(std::size_t added, std::size_t changed, std::size_t scans, std::size_t objects) {
+  void tell(std::size_t changed, const WatchCommit& commit) {
     changed_ += changed;
-    if (callbacks_.committed) callbacks_.committed(added, scans, objects);
+    if (callbacks_.committed) callbacks_.committed(commit);
   }
   void tell(std::size_t added, std::size_t changed, const ChangeReport& report) {
-    tell(added, changed, report.scans, report.object_count);
+    const ObjectChanges& objects = report.objects;
+    tell(changed,
+         {added, report.scans, report.object_count, report.tiles_decided, objects.added.size(), objects.changed.size(),
+          objects.redecided.size(), objects.gone.size(), objects.split.size(), objects.joined.size()});
   }
 
   const fs::path &folder_, &map_;

@@ -17,10 +17,18 @@ struct WatchParams {
   scan::ScanSetParams scans = {};
 };
 
+/// What a commit did.
+struct WatchCommit {
+  std::size_t added = 0;               ///< scans
+  std::size_t scans = 0, objects = 0;  ///< of the map afterwards
+  std::size_t tiles_decided = 0;       ///< in which the rules ran
+  std::size_t objects_added = 0, objects_changed = 0, objects_redecided = 0, objects_gone = 0, objects_split = 0,
+              objects_joined = 0;  ///< as in ObjectChanges
+};
+
 struct WatchCallbacks {
-  std::function<MapInputs()> inputs;  ///< for the build, when there is no map yet
-  /// After each commit: scans that were added, scans and objects of the map.
-  std::function<void(std::size_t added, std::size_t scans, std::size_t objects)> committed;
+  std::function<MapInputs()> inputs;                        ///< for the build, when there is no map yet
+  std::function<void(const WatchCommit&)> committed;        ///< after each commit
   std::function<bool()> is_stopped = [] { return false; };  ///< asked at each look
 };
 
