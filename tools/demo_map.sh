@@ -16,8 +16,8 @@ ln -s ../scans/scan_00{0..5}.pcd "$out/first/"
 grep -v '^#' "$out/scans/poses.txt" | head -6 >"$out/first/poses.txt"
 head -6 "$out/scans/times.txt" >"$out/first/times.txt"
 "$cluxel" build "$out/first" -o "$out/campus.clx"
-say "run: extending it by the others; what changes:"
-"$cluxel" extend "$out/campus.clx" "$out/scans"
+say "run: extending it by the others; what changes, with some of the objects that came, changed, split and joined:"
+"$cluxel" extend "$out/campus.clx" "$out/scans" --list 3
 say "run: asking it where the street signs are: street_signs.rq"
 "$cluxel" query "$out/campus.clx" street_signs.rq
 sign=$("$cluxel" query "$out/campus.clx" street_signs.rq --format csv | sed -n '2s/,.*//p')

@@ -17,6 +17,15 @@ chromium=$(command -v chromium || command -v chromium-browser) || skip "there is
 
 export CLUXEL_SOURCE=$source_dir CLUXEL_PROGRAM=$cluxel CLUXEL_PAGES=$work CLUXEL_CHROMIUM=$chromium CLUXEL_HOME=$source_dir
 bash "$source_dir/tools/demo_map.sh" "$cluxel" "$work" >"$build_dir/first_visit.log" 2>&1 || fail "the demo failed: $build_dir/first_visit.log"
+log=$build_dir/first_visit.log hash='[0-9a-f]{32}'
+# told KIND LINE: below the count of a kind of change, the demo lists objects as LINE says.
+told() {
+  sed -n "/^  [0-9]* $1/,/^  [0-9]/p" "$log" | grep -Eq "^    [A-Za-z]+ $hash$2\$" || fail "the demo lists no object that is '$1'"
+}
+told added ''
+told changed ", was [A-Za-z]+ $hash"
+told 'from splits' ", was [A-Za-z]+ $hash"
+told joined ", was [A-Za-z]+ $hash, [A-Za-z]+ $hash.*"
 head -c 3 "$work/campus.pgm" | grep -q P5 || fail "campus.pgm is no image"
 objects=$("$cluxel" info "$work/campus.clx" --json | node -p 'JSON.parse(require("node:fs").readFileSync(0)).objects')
 grep -q 'campus' "$work/campus.yaml" || fail "campus.yaml does not name its image"

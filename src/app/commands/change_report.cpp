@@ -2,9 +2,11 @@
 // Objects are counted by class, and listed in JSON.
 #include "app/commands/change_report.hpp"
 
+#include <algorithm>
 #include <map>
 
 #include "app/commands/statement_list.hpp"
+#include "app/option_checks.hpp"
 #include "mapping/map_reader.hpp"
 
 namespace cluxel::app {
@@ -68,32 +70,36 @@ Json statementsJson(const std::vector<mapping::StatementOutcome>& outcomes) {
   return json;
 }
 
-void printJsonReport(const fs::path& map, const ChangeReport& report, bool dry_run) {
+}  // namespace
+
+Json changeJson(const fs::path& map, const ChangeReport& report, bool dry_run) {
   const auto before = classesOf(report.before, report.class_names), after = classesOf(report.after, report.class_names);
-  printJson(Json{{"map", map.string()},
-                 {"dry_run", dry_run},
-                 {"has_changes", report.has_changes},
-                 {"scans_added", report.scans_added},
-                 {"scans_already_there", report.scans_already_there},
-                 {"scans_removed", report.scans_removed},
-                 {"scans_moved", report.scans_moved},
-                 {"tiles_touched", report.tiles_touched},
-                 {"tiles_changed", report.tiles_changed},
-                 {"tiles_decided", report.tiles_decided},
-                 {"local_commits", report.local_commits},
-                 {"maps_taken_over", report.maps_taken_over},
-                 {"scans", report.scans},
-                 {"tiles", report.tiles},
-                 {"statements", statementsJson(report.statements)},
-                 {"objects",
-                  {{"unchanged", report.objects.unchanged},
-                   {"added", objectsJson(report.objects.added, after)},
-                   {"gone", objectsJson(report.objects.gone, before)},
-                   {"redecided", redecidedJson(report.objects.redecided, report.class_names)},
-                   {"changed", objectsJson(report.objects.changed, after, before)},
-                   {"split", objectsJson(report.objects.split, after, before)},
-                   {"joined", objectsJson(report.objects.joined, after, before)}}}});
+  return Json{{"map", map.string()},
+              {"dry_run", dry_run},
+              {"has_changes", report.has_changes},
+              {"scans_added", report.scans_added},
+              {"scans_already_there", report.scans_already_there},
+              {"scans_removed", report.scans_removed},
+              {"scans_moved", report.scans_moved},
+              {"tiles_touched", report.tiles_touched},
+              {"tiles_changed", report.tiles_changed},
+              {"tiles_decided", report.tiles_decided},
+              {"local_commits", report.local_commits},
+              {"maps_taken_over", report.maps_taken_over},
+              {"scans", report.scans},
+              {"tiles", report.tiles},
+              {"statements", statementsJson(report.statements)},
+              {"objects",
+               {{"unchanged", report.objects.unchanged},
+                {"added", objectsJson(report.objects.added, after)},
+                {"gone", objectsJson(report.objects.gone, before)},
+                {"redecided", redecidedJson(report.objects.redecided, report.class_names)},
+                {"changed", objectsJson(report.objects.changed, after, before)},
+                {"split", objectsJson(report.objects.split, after, before)},
+                {"joined", objectsJson(report.objects.joined, after, before)}}}};
 }
+
+namespace {
 
 /// ": 3 Tree, 1 Bush (other parts: 3, another rule: 1, another confidence: 2)".
 std::string redecidedByClass(const std::vector<mapping::RedecidedObject>& objects, const rdf::ClassNames& names) {
@@ -112,18 +118,48 @@ std::string redecidedByClass(const std::vector<mapping::RedecidedObject>& object
          ", another rule: " + std::to_string(rules) + ", another confidence: " + std::to_string(confidences) + ")";
 }
 
+/// "Tree 0123…".
+std::string namedObject(const ContentHash& id, const std::map<ContentHash, std::string>& classes) {
+  return classes.at(id) + " " + id.hex();
+}
+
+/// Some objects of a list, one a line.
+void listSome(const std::vector<ContentHash>& objects, std::size_t listed,
+              const std::map<ContentHash, std::string>& classes) {
+  for (std::size_t i = 0; i < std::min(listed, objects.size()); ++i)
+    std::printf("    %s\n", namedObject(objects[i], classes).c_str());
+}
+void listSome(const std::vector<DerivedObject>& objects, std::size_t listed,
+              const std::map<ContentHash, std::string>& after, const std::map<ContentHash, std::string>& before) {
+  for (std::size_t i = 0; i < std::min(listed, objects.size()); ++i) {
+    std::string from;
+    for (const ContentHash& id : objects[i].from) from += (from.empty() ? "" : ", ") + namedObject(id, before);
+    std::printf("    %s, was %s\n", namedObject(objects[i].id, after).c_str(), from.c_str());
+  }
+}
+
 }  // namespace
 
+void addListed(CLI::App& command, std::size_t& listed) {
+  command
+      .add_option("--list", listed, "name up to this many of the objects that came, went, changed, split and joined")
+      ->check(wholeWithin({.min = 0, .max = 1'000'000'000}));
+}
+
+void addDryRun(CLI::App& command, bool& is_dry_run) {
+  command.add_flag("--dry-run", is_dry_run, "tell what would change, and write nothing");
+}
+
 void addChangeOptions(CLI::App& command, mapping::ChangeParams& params, bool in_batches) {
-  command.add_flag("--dry-run", params.dry_run, "tell what would change, and write nothing");
+  addDryRun(command, params.dry_run);
   if (in_batches)
     command.add_option("--batch-points", params.batch_points, "commit when a batch of scans has this many points")
         ->check(wholeAbove0());
 }
 
 void printChange(const fs::path& map, const ChangeReport& report, const mapping::ChangeParams& params,
-                 const Session& session) {
-  if (session.json) return printJsonReport(map, report, params.dry_run);
+                 const Session& session, std::size_t listed) {
+  if (session.json) return printJson(changeJson(map, report, params.dry_run));
   if (!report.has_changes) {
     std::printf("%s: nothing changes%s\n", map.c_str(), report.scans_already_there > 0 ? "; all scans are there" : "");
     return;
@@ -141,10 +177,15 @@ void printChange(const fs::path& map, const ChangeReport& report, const mapping:
   std::printf("  %zu redecided%s\n", objects.redecided.size(),
               redecidedByClass(objects.redecided, report.class_names).c_str());
   std::printf("  %zu added%s\n", objects.added.size(), byClass(objects.added, after, own).c_str());
+  listSome(objects.added, listed, after);
   std::printf("  %zu gone%s\n", objects.gone.size(), byClass(objects.gone, before, own).c_str());
+  listSome(objects.gone, listed, before);
   std::printf("  %zu changed%s\n", objects.changed.size(), byClass(objects.changed, after, derived).c_str());
+  listSome(objects.changed, listed, after, before);
   std::printf("  %zu from splits%s\n", objects.split.size(), byClass(objects.split, after, derived).c_str());
+  listSome(objects.split, listed, after, before);
   std::printf("  %zu joined%s\n", objects.joined.size(), byClass(objects.joined, after, derived).c_str());
+  listSome(objects.joined, listed, after, before);
 }
 
 }  // namespace cluxel::app

@@ -24,6 +24,7 @@ struct ChangeOptions {
   std::vector<std::string> clouds;
   ScanOptions scans;
   mapping::ChangeParams change;
+  std::size_t listed = 0;
 };
 
 ExitCode extend(const ChangeOptions& options, Session& session) {
@@ -34,7 +35,7 @@ ExitCode extend(const ChangeOptions& options, Session& session) {
   const scan::ScanSet scans = scan::ScanSet::open(options.inputs, options.scans.params(), session.console);
   mapping::ChangeParams params = options.change;
   params.threads = session.threadCount();
-  printChange(options.map, extendMap(options.map, scans, params, session.console), params, session);
+  printChange(options.map, extendMap(options.map, scans, params, session.console), params, session, options.listed);
   return ExitCode::Done;
 }
 
@@ -44,7 +45,7 @@ ExitCode retract(const ChangeOptions& options, Session& session) {
   params.threads = session.threadCount();
   const auto clouds = mapping::cloudsNamed(options.map, options.clouds, session.console,
                                            {mapping::IncludeRetracted::Yes, mapping::CompareFiles::Yes});
-  printChange(options.map, retractScans(options.map, clouds, params, session.console), params, session);
+  printChange(options.map, retractScans(options.map, clouds, params, session.console), params, session, options.listed);
   return ExitCode::Done;
 }
 
@@ -74,7 +75,7 @@ ExitCode repose(const ChangeOptions& options, Session& session) {
   mapping::ChangeParams params = options.change;
   params.threads = session.threadCount();
   const auto poses = posesOf(scans, options.map, session.console);
-  printChange(options.map, moveScans(options.map, poses, params, session.console), params, session);
+  printChange(options.map, moveScans(options.map, poses, params, session.console), params, session, options.listed);
   return ExitCode::Done;
 }
 
@@ -82,6 +83,7 @@ struct MergeOptions {
   std::vector<fs::path> maps;
   fs::path output, transform, use;
   mapping::MergeParams params;
+  std::size_t listed = 0;
 };
 
 std::optional<std::size_t> numberOf(const fs::path& used, const std::vector<fs::path>& maps) {
@@ -108,7 +110,8 @@ ExitCode merge(const MergeOptions& options, Session& session) {
   mapping::MergeParams params = options.params;
   params.change.threads = session.threadCount();
   params.use = numberOf(options.use, options.maps);
-  printChange(options.output, mergeMaps(maps, options.output, params, session.console), params.change, session);
+  printChange(options.output, mergeMaps(maps, options.output, params, session.console), params.change, session,
+              options.listed);
   return ExitCode::Done;
 }
 
@@ -121,12 +124,14 @@ void addChange(CLI::App& app, Session& session) {
   extending->add_option("scans", options->inputs, "files, folders and manifests of scans")->required();
   addScanOptions(*extending, options->scans);
   addChangeOptions(*extending, options->change, true);
+  addListed(*extending, options->listed);
   onRun(*extending, session, [options, &session] { return extend(*options, session); });
 
   CLI::App* retracting = app.add_subcommand("retract", "remove scans from a map");
   retracting->add_option("map", options->map, "a finished map")->required();
   retracting->add_option("clouds", options->clouds, "clouds by id (four digits or more) or file name")->required();
   addChangeOptions(*retracting, options->change, true);
+  addListed(*retracting, options->listed);
   onRun(*retracting, session, [options, &session] { return retract(*options, session); });
 
   CLI::App* reposing = app.add_subcommand("repose", "give scans of a map other poses, as after a loop closure");
@@ -134,6 +139,7 @@ void addChange(CLI::App& app, Session& session) {
   reposing->add_option("scans", options->inputs, "the scans, with their new poses: what 'register' writes")->required();
   addScanOptions(*reposing, options->scans);
   addChangeOptions(*reposing, options->change, true);
+  addListed(*reposing, options->listed);
   onRun(*reposing, session, [options, &session] { return repose(*options, session); });
 
   auto merging = std::make_shared<MergeOptions>();
@@ -145,6 +151,7 @@ void addChange(CLI::App& app, Session& session) {
   command->add_option("--use", merging->use, "the map whose ontology, rules and model are used, when they differ");
   command->add_flag("--force", merging->params.force, "replace a file that is there");
   addChangeOptions(*command, merging->params.change, true);
+  addListed(*command, merging->listed);
   onRun(*command, session, [merging, &session] { return merge(*merging, session); });
 }
 
