@@ -123,6 +123,11 @@ MapInputs storedInputs(const rdf::ReadTransaction& transaction) {
   }
 }
 
+bool hasUnfinishedBuild(const rdf::ReadTransaction& transaction) {
+  const std::optional<MapState> state = storedState(transaction);
+  return state && !state->is_finished;
+}
+
 bool requireFinished(const std::filesystem::path& file, const rdf::ReadTransaction& transaction) {
   const auto state = storedState(transaction);
   if (state && !state->is_finished)

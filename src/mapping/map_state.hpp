@@ -21,6 +21,9 @@ void storeState(rdf::WriteTransaction& transaction, const MapState& state);
 /// Absent before the first commit of a build.
 std::optional<MapState> storedState(const rdf::ReadTransaction& transaction);
 
+/// Whether what it holds is that of some of its scans. False for a store that no build has made.
+bool hasUnfinishedBuild(const rdf::ReadTransaction& transaction);
+
 /// True for a map, false for a store that no build has made. Throws Error (InvalidArgument) when a build is unfinished.
 bool requireFinished(const std::filesystem::path& file, const rdf::ReadTransaction& transaction);
 

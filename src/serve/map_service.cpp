@@ -57,6 +57,13 @@ MapService::MapService(const std::vector<MapArgument>& maps, const DataHome& hom
   for (const MapArgument& map : maps) maps_.push_back(std::make_unique<ServedMap>(map.name, map.file));
 }
 
+std::vector<std::filesystem::path> MapService::unfinishedMaps() const {
+  std::vector<std::filesystem::path> files;
+  for (const auto& map : maps_)
+    if (map->isUnfinished()) files.push_back(map->file());
+  return files;
+}
+
 void MapService::tidy() {
   for (const auto& map : maps_) {
     try {
@@ -145,7 +152,13 @@ HttpResponse MapService::answerRoute(const Route& route, const HttpRequest& requ
     throw Refusal(405, request.method + " is not allowed here; send rules by POST", {{"Allow", "POST"}});
   requireMethod(request, may_post || is_trial);
   const WorkSlots::Slot slot = slots_.take(request.has_hung_up);
-  return route.map == nullptr ? answerOwn(route) : answerMap(route, request, target);
+  if (route.map == nullptr) return answerOwn(route);
+  const bool is_unfinished = options_.warns_of_unfinished && route.map->isUnfinished();
+  HttpResponse response = answerMap(route, request, target);
+  if (is_unfinished)
+    response.headers.emplace_back(kWarningHeader,
+                                  "the build of this map is unfinished: the answer is that of some of its scans");
+  return response;
 }
 
 HttpResponse MapService::answerOwn(const Route& route) const {

@@ -2,6 +2,7 @@
 // The service: routes requests to the resources of maps, within its limits. It knows no sockets.
 #pragma once
 
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -38,6 +39,8 @@ class MapService {
 
   /// Never throws.
   HttpResponse handle(const HttpRequest& request);
+  /// Files of maps whose build is not finished.
+  std::vector<std::filesystem::path> unfinishedMaps() const;
   /// Releases old commits, so that writers can reuse their pages. To be called now and then.
   void tidy();
 

@@ -6,6 +6,7 @@
 
 #include "api/object_query.hpp"
 #include "cluxel/error.hpp"
+#include "mapping/map_state.hpp"
 
 namespace cluxel::serve {
 
@@ -13,6 +14,10 @@ ServedMap::ServedMap(std::string name, const std::filesystem::path& file)
     : name_(std::move(name)), map_(std::filesystem::absolute(file)) {
   map_.reader();  // throws when the file is no map
   map_.release();
+}
+
+bool ServedMap::isUnfinished() const {
+  return mapping::hasUnfinishedBuild(rdf::Environment::open(file(), rdf::OpenMode::ReadOnly)->read());
 }
 
 void ServedMap::withReader(const std::function<void(const mapping::MapReader&)>& use) {

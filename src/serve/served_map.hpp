@@ -33,6 +33,8 @@ class ServedMap {
   const std::filesystem::path& file() const { return map_.file(); }
   /// A snapshot of the newest commit, for one request.
   rdf::QuadReader quads() const { return map_.quads(); }
+  /// Whether the newest commit is one of a build that is not finished.
+  bool isUnfinished() const;
   /// Calls `use` with the layers of the newest commit; one caller at a time.
   void withReader(const std::function<void(const mapping::MapReader&)>& use);
   /// Drops what withReader() keeps of a commit that is not the newest any more.

@@ -36,6 +36,7 @@ struct ServiceOptions {
   /// The accepted values of Host without port. Empty: all. It keeps web sites from reading a service on this machine
   /// under a name of theirs.
   std::vector<std::string> host_names = {};
+  bool warns_of_unfinished = true;  ///< by a header of answers from a map whose build is not finished
   /// The HTML text of a map's page, made once for each commit; absent: a plain page that lists what the service
   /// answers.
   std::function<std::string(const mapping::MapReader& map, const std::string& map_name)> page = {};

@@ -2,7 +2,7 @@
 // Where the program takes its data from, and what it says of maps that are empty, unfinished, or may not be written.
 #include <fstream>
 
-#include "app/program_fixture.hpp"
+#include "app/serve_fixture.hpp"
 
 namespace cluxel::app {
 namespace {
@@ -117,7 +117,7 @@ TEST_F(Program, AnswersFromAnUnfinishedMapComeWithANote) {
   ASSERT_TRUE(fs::exists(map));
   for (const std::string& command :
        {"query " + map + " -e 'SELECT * { ?s a ?c } LIMIT 1'", "export " + map + " --canonical",
-        "explain " + map + " 0", "evaluate " + map + " --truth campus"}) {
+        "explain " + map + " 0", "evaluate " + map + " --truth campus", "dump " + map}) {
     const Outcome told = run(command), silent = run(command + " --allow-unfinished");
     EXPECT_EQ(told.code, 0) << command << told.err;
     EXPECT_NE(told.err.find("the build of this map is unfinished"), std::string::npos) << command << told.err;
@@ -125,6 +125,24 @@ TEST_F(Program, AnswersFromAnUnfinishedMapComeWithANote) {
     EXPECT_EQ(told.out, silent.out) << command;
   }
   EXPECT_EQ(run("export " + path("map.clx").string() + " --canonical").err, "") << "a finished map";
+  EXPECT_EQ(run("dump " + path("map.clx").string()).err, "") << "a finished map";
+
+  const std::string serve = program() + "serve --port 0 --quiet finished=" + path("map.clx").string() + " cut=" + map;
+  for (const bool is_allowed : {false, true}) {
+    const Served served(serve + (is_allowed ? " --allow-unfinished" : ""), path("serve.log"));
+    EXPECT_EQ(readFile(path("serve.log")).find("cut_campus.clx: warning: the build of this map is unfinished") ==
+                  std::string::npos,
+              is_allowed);
+    EXPECT_EQ(readFile(path("serve.log")).find(path("map.clx").string()), std::string::npos);
+    for (const char* resource : {"/objects", "/sparql?query=ASK%7B%7D", "/questions/objects", ""}) {
+      SCOPED_TRACE(resource);
+      const Reply cut = served.get(std::string("/maps/cut") + resource);
+      EXPECT_EQ(cut.status, 200) << cut.head;
+      EXPECT_EQ(cut.header("Cluxel-Warning").find("the build of this map is unfinished") == std::string::npos,
+                is_allowed);
+      EXPECT_EQ(served.get(std::string("/maps/finished") + resource).header("Cluxel-Warning"), "");
+    }
+  }
 }
 
 TEST_F(Program, ThatAMapIsUnfinishedIsToldBeforeFaultsOfTheOtherArguments) {

@@ -3,10 +3,12 @@
 #include <cstdio>
 
 #include "app/command.hpp"
+#include "app/map_condition.hpp"
 #include "app/shared_options.hpp"
 #include "base/file_pieces.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/change/rdf_loading.hpp"
+#include "mapping/map_state.hpp"
 #include "rdf/file/environment.hpp"
 #include "rdf/io/rdf_io.hpp"
 
@@ -23,7 +25,7 @@ struct LoadOptions {
 struct DumpOptions {
   fs::path store, output;
   std::string graph;
-  bool one_graph = false;
+  bool one_graph = false, allow_unfinished = false;
 };
 
 ExitCode load(const LoadOptions& options, Session& session) {
@@ -44,8 +46,10 @@ bool holdsGraph(const rdf::QuadReader& quads, const Term& graph) {
   return pattern.g && quads.scan(pattern).next(quad);
 }
 
-ExitCode dump(const DumpOptions& options) {
-  const rdf::QuadReader quads(rdf::Environment::open(options.store, rdf::OpenMode::ReadOnly)->read());
+ExitCode dump(const DumpOptions& options, Session& session) {
+  const rdf::ReadTransaction transaction = rdf::Environment::open(options.store, rdf::OpenMode::ReadOnly)->read();
+  noteUnfinished(options.store, !mapping::hasUnfinishedBuild(transaction), options.allow_unfinished, session);
+  const rdf::QuadReader quads(transaction);
   const auto graph = options.one_graph ? std::optional(Term::iri(options.graph)) : std::nullopt;
   if (graph && !holdsGraph(quads, *graph))
     throw Error(ErrorKind::NotFound,
@@ -82,10 +86,10 @@ void addDump(CLI::App& app, Session& session) {
   CLI::Option* graph = command->add_option("--graph", options->graph,
                                            "only this graph, as N-Triples; an empty IRI is the unnamed graph");
   mayBeEmpty(*graph);
+  addAllowUnfinished(*command, options->allow_unfinished);
   onRun(*command, session, [options, graph, &session] {
-    (void)session;
     options->one_graph = graph->count() > 0;
-    return dump(*options);
+    return dump(*options, session);
   });
 }
 

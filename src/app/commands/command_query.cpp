@@ -86,12 +86,6 @@ sparql::ResultFormat formatOf(const QueryArguments& arguments, const Session& se
   return *format;
 }
 
-/// An RDF file, and a store that no build has made, have no state.
-bool isFinished(const tasks::QuerySource& source) {
-  const auto state = mapping::storedState(source.environment->read());
-  return !state || state->is_finished;
-}
-
 void warn(const std::vector<Diagnostic>& warnings) {
   for (const Diagnostic& warning : warnings) std::fprintf(stderr, "%s\n", format(warning).c_str());
 }
@@ -109,7 +103,8 @@ ExitCode query(const QueryArguments& arguments, Session& session) {
   const tasks::Question question = questionFrom(arguments.file, arguments.text, session);
   if (arguments.check) return checkSyntax(arguments, question);
   const tasks::QuerySource source = tasks::openQuerySource(arguments.source);
-  noteUnfinished(arguments.source, isFinished(source), arguments.allow_unfinished, session);
+  noteUnfinished(arguments.source, !mapping::hasUnfinishedBuild(source.environment->read()), arguments.allow_unfinished,
+                 session);
   const rdf::QuadReader reader = source.reader();
   sparql::QueryOptions options = optionsOf(arguments, source, question.file.string());
   const NamedSources services("--service", arguments.services);

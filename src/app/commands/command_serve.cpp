@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "app/command.hpp"
+#include "app/map_condition.hpp"
 #include "app/shared_options.hpp"
 #include "app/stop_signals.hpp"
 #include "base/file_bytes.hpp"
@@ -31,7 +32,7 @@ struct ServeArguments {
   std::uint64_t max_rows = 0, max_memory_mib = 1024, max_answer_mib = 256, max_request_kib = 1024;
   std::uint64_t page_points = 5'000'000;
   std::size_t running = 0, queue = 128, connections = 256;
-  bool quiet = false;
+  bool quiet = false, allow_unfinished = false;
 };
 
 /// Lines of requests, to a file or to stderr.
@@ -126,6 +127,7 @@ serve::ServiceOptions serviceOptions(const ServeArguments& arguments, const Sess
   options.load.running = arguments.running > 0 ? arguments.running : session.threadCount();
   options.load.waiting = arguments.queue;
   options.load.per_second = arguments.rate;
+  options.warns_of_unfinished = !arguments.allow_unfinished;
   options.token = tokenIn(arguments.token_file);
   options.allowed_origins = arguments.origins;
   options.page = pageMaker(session.dataHome(), arguments.page_points);
@@ -159,6 +161,7 @@ ExitCode serveMaps(const ServeArguments& arguments, Session& session) {
   AccessLines lines(arguments);
   serve::MapService service(serve::mapArgumentsOf(arguments.maps), session.dataHome(),
                             serviceOptions(arguments, session));
+  for (const fs::path& map : service.unfinishedMaps()) noteUnfinished(map, false, arguments.allow_unfinished, session);
   auto signals = std::make_unique<StopSignals>();
   serve::HttpServer server(
       httpOptions(arguments), [&service](const serve::HttpRequest& request) { return service.handle(request); },
@@ -191,6 +194,7 @@ void addServe(CLI::App& app, Session& session) {
                       "a file with the token that permits updates; without it updates are refused");
   command->add_option("--cors", options->origins, "an origin whose web pages may read answers; *: all origins");
   command->add_option("--log", options->log, "a file to append the access log to, instead of stderr");
+  addAllowUnfinished(*command, options->allow_unfinished);
   command->add_flag("--quiet", options->quiet, "write no access log");
   command->add_option("--deadline", options->deadline_s, "seconds after which a query is given up")
       ->check(within({.min = 0.001, .max = 1e9}));
