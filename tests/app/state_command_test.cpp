@@ -41,6 +41,28 @@ TEST_F(StateCommand, TakesAClassANameAndARemark) {
   EXPECT_EQ(listed(), 3u);
 }
 
+TEST_F(StateCommand, UpdateAndLoadReportWhatStateReports) {
+  const std::string tree = one("Tree"), object = "<https://w3id.org/cluxel/map/object/" + tree + ">";
+  const std::string sign = object + " a <https://w3id.org/cluxel/ontology#StreetSign>";
+  const std::string update = "update " + map().string() + " -e 'INSERT DATA { " + sign + " }' --dry-run";
+  const fs::path file = path("sign.ttl");
+  writeFile(file, sign + " .\n");
+  const std::string load = "load " + map().string() + " " + file.string() + " --dry-run";
+  const auto json = [](const Outcome& outcome) { return nlohmann::json::parse(outcome.out); };
+  const nlohmann::json stated = json(state("--object " + tree + " --is StreetSign --dry-run --json"));
+  EXPECT_EQ(stated.at("objects").at("changed").size(), 1u);
+  EXPECT_EQ(json(run(update + " --json")).at("change"), stated);
+  EXPECT_EQ(json(run(load + " --json")).at("change"), stated);
+  EXPECT_EQ(json(run(update + " --json")).at("inserted"), 1) << "the dry run before it wrote nothing";
+  for (const std::string& command : {update, load}) {
+    const Outcome told = run(command);
+    EXPECT_THAT(told.out, HasSubstr("(dry run, nothing written)"));
+    EXPECT_THAT(told.out, HasSubstr("decided anew"));
+    EXPECT_THAT(told.out, HasSubstr("1 changed: 1 StreetSign"));
+  }
+  EXPECT_EQ(listed(), 0u);
+}
+
 TEST_F(StateCommand, ANewLabelReplacesTheEarlierOneAndNotesAreAdded) {
   const std::string tree = "--object " + one("Tree");
   ASSERT_EQ(state(tree + " --label north --note seen").code, 0);

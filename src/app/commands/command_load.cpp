@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "app/command.hpp"
+#include "app/commands/change_report.hpp"
 #include "app/map_condition.hpp"
 #include "app/shared_options.hpp"
 #include "base/file_pieces.hpp"
@@ -31,11 +32,18 @@ struct DumpOptions {
 ExitCode load(const LoadOptions& options, Session& session) {
   const mapping::RdfLoadReport report =
       mapping::loadRdfFiles(options.store, options.files, options.params, session.console);
-  if (session.json)
-    printJson(Json{{"statements", report.statements}, {"added", report.added}});
-  else
-    std::printf("%llu statements read, %llu of them new\n", static_cast<unsigned long long>(report.statements),
-                static_cast<unsigned long long>(report.added));
+  const bool dry_run = options.params.dry_run;
+  if (session.json) {
+    Json json{{"statements", report.statements}, {"added", report.added}};
+    if (dry_run) json["dry_run"] = true;
+    if (report.is_map) json["change"] = changeJson(options.store, report.change, dry_run);
+    printJson(json);
+    return ExitCode::Done;
+  }
+  std::printf("%llu statements read, %llu of them new%s\n", static_cast<unsigned long long>(report.statements),
+              static_cast<unsigned long long>(report.added),
+              dry_run && !report.change.has_changes ? " (dry run, nothing written)" : "");
+  if (report.change.has_changes) printChange(options.store, report.change, {.dry_run = dry_run}, session);
   return ExitCode::Done;
 }
 
@@ -75,6 +83,7 @@ void addLoad(CLI::App& app, Session& session) {
   command->add_option("--graph", options->params.graph, "graph for statements that name no graph")->check(named());
   command->add_option("--base", options->params.base_iri, "base IRI of relative IRIs; default: the file's own")
       ->check(named());
+  addDryRun(*command, options->params.dry_run);
   onRun(*command, session, [options, &session] { return load(*options, session); });
 }
 

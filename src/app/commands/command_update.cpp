@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // `cluxel update`: changes to the operator's statements by SPARQL Update.
 #include "app/command.hpp"
+#include "app/commands/change_report.hpp"
 #include "app/named_sources.hpp"
 #include "app/shared_options.hpp"
 #include "base/file_bytes.hpp"
@@ -37,7 +38,7 @@ struct UpdateArguments {
   std::vector<std::string> loads;
   std::string base_iri, author;
   BudgetOptions budget;
-  bool strict = false, no_prefixes = false, check = false;
+  bool strict = false, no_prefixes = false, check = false, dry_run = false;
 };
 
 sparql::UpdateOptions optionsOf(const UpdateArguments& arguments, const std::string& name) {
@@ -60,19 +61,29 @@ ExitCode checkSyntax(const sparql::QueryOptions& query, const std::string& text)
   return ExitCode::Done;
 }
 
+void printReport(const UpdateArguments& arguments, const mapping::MapUpdateReport& report, const Session& session) {
+  if (session.json) {
+    Json json{{"inserted", report.inserted}, {"deleted", report.deleted}};
+    if (arguments.dry_run) json["dry_run"] = true;
+    if (report.is_map) json["change"] = changeJson(arguments.map, report.change, arguments.dry_run);
+    return printJson(json);
+  }
+  std::printf("%llu inserted, %llu deleted%s\n", static_cast<unsigned long long>(report.inserted),
+              static_cast<unsigned long long>(report.deleted),
+              arguments.dry_run && !report.change.has_changes ? " (dry run, nothing written)" : "");
+  if (report.change.has_changes) printChange(arguments.map, report.change, {.dry_run = arguments.dry_run}, session);
+}
+
 ExitCode update(const UpdateArguments& arguments, Session& session) {
   const tasks::Question question = questionFrom(arguments.file, arguments.text, session);
   const std::map<std::string, fs::path> loads = namedFiles("--load", arguments.loads);
   sparql::UpdateOptions options = optionsOf(arguments, question.file.string());
   if (arguments.check) return checkSyntax(options.query, question.text);
   if (!loads.empty()) options.load = [&loads](const std::string& iri) { return triplesOf(loads, iri); };
-  const sparql::UpdateReport report = mapping::updateMap(arguments.map, question.text, options, session.console,
-                                                         {.author = authorOr(arguments.author)});
-  if (session.json)
-    printJson(Json{{"inserted", report.inserted}, {"deleted", report.deleted}});
-  else
-    std::printf("%llu inserted, %llu deleted\n", static_cast<unsigned long long>(report.inserted),
-                static_cast<unsigned long long>(report.deleted));
+  printReport(arguments,
+              mapping::updateMap(arguments.map, question.text, options, session.console,
+                                 {.author = authorOr(arguments.author), .dry_run = arguments.dry_run}),
+              session);
   return ExitCode::Done;
 }
 
@@ -92,6 +103,7 @@ void addUpdate(CLI::App& app, Session& session) {
   command->add_flag(
       "--strict", options->strict,
       "in a store that no build has made: every graph may be written, and the default graph is the unnamed one");
+  addDryRun(*command, options->dry_run);
   command->add_flag("--check", options->check, "only check the syntax");
   onRun(*command, session, [options, &session] { return update(*options, session); });
 }

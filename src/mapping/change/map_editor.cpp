@@ -101,6 +101,21 @@ std::string noteOfCopy(const fs::path& file) {
          temporaryFolderPath().string();
 }
 
+void tellMap(ChangeReport& report, const rdf::ReadTransaction& transaction) {
+  const SemanticState state = storedSemanticState(transaction).value_or(SemanticState{});
+  report.objects.unchanged = report.object_count = state.objects;
+  report.cluxels = state.cluxels, report.primitives = state.primitives;
+  report.scans = state.clouds.size();
+  report.tiles = storedTiles(transaction).size();
+}
+
+void tellObjects(ChangeReport& report, DifferentObjects different) {
+  report.before = std::move(different.before), report.after = std::move(different.after);
+  report.objects = compareStates(report.before, report.after, report.object_count - report.after.size());
+  report.objects.unchanged -= different.redecided.size();
+  report.objects.redecided = std::move(different.redecided);
+}
+
 MapEditor::MapEditor(const fs::path& file, const ChangeParams& params, ProgressSink& sink)
     : file_(withoutLinks(file)), params_(params), sink_(sink) {
   if (worksOnCopy(file_, params)) {
@@ -114,15 +129,7 @@ MapEditor::MapEditor(const fs::path& file, const ChangeParams& params, ProgressS
   }
   parsed_ = parseInputs(requireFinishedInputs(environment_->read(), file));
   inputs_hash_ = parsed_.inputs.hash().hex();
-  readBefore(environment_->read());
-}
-
-void MapEditor::readBefore(const rdf::ReadTransaction& transaction) {
-  const SemanticState state = storedSemanticState(transaction).value_or(SemanticState{});
-  report_.objects.unchanged = report_.object_count = state.objects;
-  report_.cluxels = state.cluxels, report_.primitives = state.primitives;
-  report_.scans = state.clouds.size();
-  report_.tiles = storedTiles(transaction).size();
+  tellMap(report_, environment_->read());
 }
 
 void MapEditor::setInputs(ParsedInputs inputs) {
@@ -149,7 +156,7 @@ rdf::WriteTransaction MapEditor::begin() {
   if (std::exchange(reopens_, false)) reopen();
   rdf::WriteTransaction transaction = beginAgain();
   eraseEarlyCommit(transaction);
-  if (!std::exchange(has_begun_, true)) readBefore(transaction);  // an update may have come in between
+  if (!std::exchange(has_begun_, true)) tellMap(report_, transaction);  // an update may have come in between
   if (defers_things_ && !std::exchange(has_own_before_, true)) {
     const std::vector<ObjectMembers> own = storedMembers(transaction);
     report_.before.insert(report_.before.begin(), own.begin(), own.end());
@@ -275,13 +282,7 @@ void MapEditor::note(SemanticUpdate update) {
 
 ChangeReport MapEditor::takeReport() {
   report_.class_names = namesOf(parsed_.rules.catalogue);
-  if (!defers_things_ && report_.has_changes) {
-    DifferentObjects different = std::exchange(difference_, {}).take();
-    report_.before = std::move(different.before), report_.after = std::move(different.after);
-    report_.objects = compareStates(report_.before, report_.after, report_.object_count - report_.after.size());
-    report_.objects.unchanged -= different.redecided.size();
-    report_.objects.redecided = std::move(different.redecided);
-  }
+  if (!defers_things_ && report_.has_changes) tellObjects(report_, std::exchange(difference_, {}).take());
   return std::move(report_);
 }
 
@@ -318,7 +319,7 @@ bool MapEditor::resume() {
   if (!paused_at_ || newest().kept(kPauseToken) != paused_at_) return false;
   report_ = {};
   has_begun_ = false;
-  readBefore(environment_->read());
+  tellMap(report_, environment_->read());
   touched_.clear(), changed_.clear();
   difference_ = {};
   return true;
@@ -329,7 +330,7 @@ void MapEditor::noteStatements() const {
 }
 
 void MapEditor::report(const rdf::ReadTransaction& transaction, const SemanticUpdate& update) {
-  readBefore(transaction);
+  tellMap(report_, transaction);
   report_.has_changes = true;
   report_.tiles_touched = touched_.size();
   report_.tiles_changed = changed_.size();

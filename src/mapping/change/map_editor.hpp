@@ -55,6 +55,11 @@ struct ChangeReport {
   rdf::ClassNames class_names;               ///< of the map's ontology afterwards
 };
 
+/// Counts what the map has now.
+void tellMap(ChangeReport& report, const rdf::ReadTransaction& transaction);
+/// Tells what became of the objects that differ, after tellMap().
+void tellObjects(ChangeReport& report, DifferentObjects different);
+
 /// Throws the Errors of MapEditor, before anything else is read. Cost: reads the inputs of the map.
 void requireChangeable(const std::filesystem::path& file, const ChangeParams& params);
 
@@ -107,7 +112,6 @@ class MapEditor {
   const ChangeParams& params() const { return params_; }
 
  private:
-  void readBefore(const rdf::ReadTransaction& transaction);
   /// Brings the stages and what follows from them up to date.
   SemanticUpdate decide(rdf::WriteTransaction& transaction, PointChanges changes, const std::vector<Cloud>& scans,
                         ProgressSink& sink);

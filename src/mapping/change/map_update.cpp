@@ -5,6 +5,7 @@
 
 #include <chrono>
 
+#include "base/file_bytes.hpp"
 #include "base/utc_time.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/build/stage_clock.hpp"
@@ -65,32 +66,52 @@ bool takeNewStatements(rdf::WriteTransaction& transaction, const rules::ClassCat
 
 }  // namespace
 
-void inferAfterUpdate(rdf::WriteTransaction& transaction, const std::set<rdf::QuadIds>& before, ProgressSink& sink,
-                      const rdf::InferenceCheck& check, const MapUpdateParams& params) {
+rdf::WriteTransaction writeOrCopy(const std::filesystem::path& file, bool is_dry_run, ProgressSink& sink) {
+  const std::filesystem::path target = withoutLinks(file);
+  if (!is_dry_run || !mayBeThere(target) || mayWriteMap(target)) return rdf::writeMap(file);
+  sink.note(noteOfCopy(file));
+  return rdf::Environment::temporaryCopyOf(target)->write();
+}
+
+ChangeReport inferAfterUpdate(rdf::WriteTransaction& transaction, const std::set<rdf::QuadIds>& before,
+                              ProgressSink& sink, const rdf::InferenceCheck& check, const MapUpdateParams& params) {
   const ParsedInputs parsed = parseInputs(storedInputs(transaction));
   anchorStatedObjects(transaction, parsed, before, sink);
   const bool has_news = takeNewStatements(transaction, parsed.rules.catalogue, params.author, sink);
-  if (!parsed.rules.asks_map && !has_news) return inferFacts(transaction, parsed.inputs, sink, check);
+  ChangeReport report;
+  report.has_changes = true;
+  report.class_names = namesOf(parsed.rules.catalogue);
+  if (!parsed.rules.asks_map && !has_news) {
+    inferFacts(transaction, parsed.inputs, sink, check);
+    tellMap(report, transaction);
+    return report;
+  }
   const double started_s = secondsNow();
   StageClock clock(sink);
   TileStages stages(parsed.model, parsed.inputs.params);
   if (check) check(0);
-  const SemanticUpdate layers =
+  SemanticUpdate layers =
       updateSemanticLayer(transaction, parsed, stages, ChangedInputs::Scans, params.layers, clock, check);
   if (const std::string note = summaryOf(layers.statements); !note.empty()) sink.note(note);
   const Activity activity{params.operation, started_s, secondsNow(), clock.seconds()};
   addLineage(transaction, addActivity(transaction, activity, {}, parsed.inputs),
              compareStates(layers.before, layers.after));
   writeThings(transaction, dateTimeText(activity.ended_s), layers.before, layers.after, keptBy(transaction, layers));
+  tellMap(report, transaction);
+  report.tiles_decided = layers.tiles_decided;
+  report.local_commits = layers.is_local ? 1 : 0;
+  report.statements = std::move(layers.statements);
+  tellObjects(report, std::move(layers));
+  return report;
 }
 
-sparql::UpdateReport updateMap(const std::filesystem::path& file, const std::string& update,
-                               const sparql::UpdateOptions& options, ProgressSink& sink,
-                               const MapUpdateParams& params) {
+MapUpdateReport updateMap(const std::filesystem::path& file, const std::string& update,
+                          const sparql::UpdateOptions& options, ProgressSink& sink, const MapUpdateParams& params) {
   HeldNotes notes(sink);
   const rdf::InferenceCheck check = checkOf(options.query.budget, Clock::now());
-  rdf::WriteTransaction transaction = rdf::writeMap(file);
-  const bool is_map = requireFinished(file, transaction);
+  rdf::WriteTransaction transaction = writeOrCopy(file, params.dry_run, sink);
+  MapUpdateReport report;
+  const bool is_map = report.is_map = requireFinished(file, transaction);
   refuseUncommittedBuild(transaction, file);
   if (is_map && options.any_graph_writable)
     throw Error(ErrorKind::InvalidArgument, file.string() +
@@ -98,18 +119,18 @@ sparql::UpdateReport updateMap(const std::filesystem::path& file, const std::str
                                                 "other graphs can only be written in a store that was not made by a "
                                                 "build");
   const std::set<rdf::QuadIds> before = is_map ? quadsThatNameResources(transaction) : std::set<rdf::QuadIds>();
-  const sparql::UpdateReport report = runUpdate(transaction, update, options);
+  static_cast<sparql::UpdateReport&>(report) = runUpdate(transaction, update, options);
   if (is_map && report.inserted + report.deleted > 0) {
     const rdf::FlushPoll poll(transaction, [&check] { check(0); });
     try {
-      inferAfterUpdate(transaction, before, notes, check, params);
+      report.change = inferAfterUpdate(transaction, before, notes, check, params);
     } catch (const RefusedQuad& refused) {
       throw InputError({.file = options.query.source_name}, refused.what());
     }
     check(0);
   }
   if (is_map) noteStandingQuads(transaction, before, notes);
-  transaction.commit();
+  if (!params.dry_run) transaction.commit();
   notes.give();
   for (const Diagnostic& warning : report.warnings) sink.note(format(warning));
   return report;

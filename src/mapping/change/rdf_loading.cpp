@@ -100,13 +100,15 @@ RdfLoadReport load(rdf::WriteTransaction& transaction, const fs::path& store, co
   const std::uint64_t before = reader.size();
   const std::set<rdf::QuadIds> named_before = is_map ? quadsThatNameResources(transaction) : std::set<rdf::QuadIds>();
   RdfLoadReport report;
+  report.is_map = is_map;
   rdf::QuadWriter writer(transaction);
   for (const fs::path& file : files) {
     report.statements += loadFile(store, sourceOf(file, params), is_map, writer);
     writer.flush();
   }
   report.added = reader.size() - before;
-  if (is_map && report.added > 0) inferAfterUpdate(transaction, named_before, notes, {}, {.operation = "load"});
+  if (is_map && report.added > 0)
+    report.change = inferAfterUpdate(transaction, named_before, notes, {}, {.operation = "load"});
   if (is_map) noteStandingQuads(transaction, named_before, notes);
   return report;
 }
@@ -116,7 +118,7 @@ RdfLoadReport load(rdf::WriteTransaction& transaction, const fs::path& store, co
 RdfLoadReport loadRdfFiles(const fs::path& store, const std::vector<fs::path>& files, const RdfLoadParams& params,
                            ProgressSink& sink) {
   NewStore made(store);
-  rdf::WriteTransaction transaction = rdf::writeMap(store);
+  rdf::WriteTransaction transaction = writeOrCopy(store, params.dry_run, sink);
   refuseUncommittedBuild(transaction, store);
   const bool is_map = requireFinished(store, transaction);
   RdfLoadParams own = params;
@@ -128,8 +130,10 @@ RdfLoadReport loadRdfFiles(const fs::path& store, const std::vector<fs::path>& f
   } catch (const RefusedQuad& refused) {
     failAtPlace(refused, files, own);
   }
-  transaction.commit();
-  made.keep();
+  if (!params.dry_run) {
+    transaction.commit();
+    made.keep();
+  }
   notes.give();
   return report;
 }
