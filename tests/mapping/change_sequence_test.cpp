@@ -2,7 +2,6 @@
 // A state machine: after any sequence of operations a map is the build from scratch of the inputs that it then has.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <fstream>
 #include <random>
 #include <set>
@@ -12,6 +11,7 @@
 #include "mapping/change/map_merge.hpp"
 #include "mapping/change/map_update.hpp"
 #include "mapping/change/statement_change.hpp"
+#include "mapping/long_tests.hpp"
 #include "mapping/mixed_scans.hpp"
 #include "mapping/small_campus.hpp"
 #include "rdf/map_iris.hpp"
@@ -105,7 +105,17 @@ class ChangeSequence {
       change(params(true));
       EXPECT_TRUE(canonicalText(map()) == before) << "a dry run changed the map";
     }
+    const bool compares_threads = isLong() || oneIn(4);
+    const fs::path before = folder_.path() / "before.clx", other = folder_.path() / "other_threads.clx";
+    if (compares_threads) fs::copy_file(map(), before, fs::copy_options::overwrite_existing);
     const ChangeReport report = change(params());
+    if (compares_threads) {
+      fs::rename(map(), other);
+      fs::rename(before, map());
+      threads_ = 3 - threads_;
+      change(params());
+      EXPECT_TRUE(canonicalText(map()) == canonicalText(other)) << "with 1 and 2 threads";
+    }
     for (const StatementOutcome& outcome : report.statements)
       applied_ += outcome.effect == StatementEffect::Applied ? 1 : 0;
   }
@@ -308,7 +318,6 @@ MapInputs replaced(MapInputs inputs, const std::string& from, const std::string&
 }
 
 TEST(ChangeSequences, GiveTheMapOfABuildFromTheInputsAfterEachOperation) {
-  const bool is_long = std::getenv("CLUXEL_LONG_TESTS") != nullptr;
   const MixedScans scans;
   scans.expectAllKinds();
   const MapInputs shipped = shippedInputs();
@@ -318,16 +327,16 @@ TEST(ChangeSequences, GiveTheMapOfABuildFromTheInputsAfterEachOperation) {
   const std::vector<MapInputs> inputs{shipped, other_model, replaced(shipped, "bush_top: 1.7 m", "bush_top: 1.2 m"),
                                       replaced(shipped, "group: { near: 1.5 m }", "group: { near: 0.2 m }")};
   std::size_t stated = 0, applied = 0;
-  for (unsigned seed = 0; seed < (is_long ? 6 : 1); ++seed) {
+  for (unsigned seed = 0; seed < (isLong() ? 6 : 1); ++seed) {
     ChangeSequence sequence(seed, scans, inputs);
-    for (int i = 0; i < (is_long ? 50 : 8) && !testing::Test::HasFailure(); ++i) {
+    for (int i = 0; i < (isLong() ? 50 : 8) && !testing::Test::HasFailure(); ++i) {
       const std::string operation = sequence.step();
       sequence.expectBuildFromScratch(operation + " (seed " + std::to_string(seed) + ", step " + std::to_string(i) +
                                       ")");
     }
     stated += sequence.stated(), applied += sequence.applied();
   }
-  EXPECT_GE(stated, is_long ? 200U : 1U);
+  EXPECT_GE(stated, isLong() ? 200U : 1U);
   EXPECT_GT(applied, stated / 2);
 }
 

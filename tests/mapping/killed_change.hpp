@@ -115,7 +115,7 @@ class KilledChange : public testing::Test {
     };
     const double cpu_s = seconds(usage.ru_utime) + seconds(usage.ru_stime);
     std::mt19937 random(3);
-    const int moments = std::getenv("CLUXEL_LONG_TESTS") != nullptr ? 200 : 6;
+    const int moments = std::getenv("CLUXEL_LONG_TESTS") != nullptr ? 200 : short_moments_;
     int killed = 0;
     for (int i = 0; i < moments; ++i) {
       moment_ = i;
@@ -167,6 +167,7 @@ class KilledChange : public testing::Test {
 
   ScratchFolder folder;
   int moment_ = 0;
+  int short_moments_ = 6;  ///< at which a change is killed, unless the tests are long
   inline static SmallCampus* campus = nullptr;
   inline static MapInputs* inputs = nullptr;
 };

@@ -130,6 +130,40 @@ TEST_F(KilledChange, AMergeIsThereWholeOrNotAtAll) {
   EXPECT_FALSE(fs::exists(map().string() + ".merging"));
 }
 
+TEST_F(KilledChange, AMergeOverAnOldMapLeavesThatOrTheWhole) {
+  short_moments_ = 2;
+  const fs::path a = folder.path() / "a", b = folder.path() / "b", old = folder.path() / "old";
+  build({file(0)}, a);
+  build({file(1), file(2)}, b);
+  build({file(2)}, old);
+  const std::string all = builtText(campus->files(), *inputs);
+  expectExact([&] { fs::copy_file(old, map(), fs::copy_options::overwrite_existing); },
+              [&](ProgressSink& sink) {
+                mergeMaps({{a}, {b}}, map(), {.change = params(), .use = std::nullopt, .force = true}, sink);
+              },
+              {canonicalText(old), all}, all, [&] { return canonicalText(map()); });
+  EXPECT_FALSE(fs::exists(map().string() + ".merging"));
+}
+
+TEST_F(KilledChange, AMergeOfAMapInAnotherFrameIsThereWholeOrNotAtAll) {
+  short_moments_ = 2;
+  const fs::path a = folder.path() / "a", b = folder.path() / "b";
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();  // exact in binary
+  T.translation() = Eigen::Vector3d(64, -128, 0.5);
+  build({file(0)}, a);
+  const ScanSet others = scansOf({file(1), file(2)});
+  std::vector<PosedScan> moved;
+  for (std::size_t i = 0; i < others.size(); ++i) moved.push_back({i, T.inverse() * others.file(i).T_map_sensor});
+  buildMap(others.posed(moved), *inputs, b, {}, silence());
+  const std::string all = builtText(campus->files(), *inputs);
+  expectExact([&] { fs::remove(map()); },
+              [&](ProgressSink& sink) {
+                mergeMaps({{a}, {b, T}}, map(), {.change = params(), .use = std::nullopt, .force = false}, sink);
+              },
+              {"", all}, all, [&] { return fs::exists(map()) ? canonicalText(map()) : std::string(); });
+  EXPECT_FALSE(fs::exists(map().string() + ".merging"));
+}
+
 TEST_F(KilledChange, RetractingIsAllOrNothing) {
   build({file(0), file(1)}, map());
   const ScanId id = scansOf({file(1)}).load(0).id;

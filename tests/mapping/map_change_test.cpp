@@ -14,6 +14,7 @@
 #include "cluxel/error.hpp"
 #include "mapping/change/map_update.hpp"
 #include "mapping/facts/map_history.hpp"
+#include "mapping/long_tests.hpp"
 #include "mapping/map_change_fixture.hpp"
 #include "mapping/presence/stored_presence.hpp"
 #include "sparql/query_engine.hpp"
@@ -27,12 +28,13 @@ using testing::HasSubstr;
 TEST_F(MapChange, ExtendingOneByOneInAnyOrderGivesTheBuildFromScratch) {
   std::mt19937 random(1);
   std::vector<std::size_t> order{0, 1, 2, 3};
-  for (int round = 0; round < 3; ++round) {
-    std::shuffle(order.begin(), order.end(), random);
+  const unsigned rounds = isLong() ? 40 : 4;  // 20 orders, with 1 and 2 threads
+  for (unsigned round = 0; round < rounds; ++round) {
+    if (round % 2 == 0) std::shuffle(order.begin(), order.end(), random);
     build({{order[0], 0}});
     Poses there{{order[0], 0}};
     for (std::size_t i = 1; i < order.size(); ++i) {
-      const ChangeReport report = extend(order[i], 0);
+      const ChangeReport report = extend(order[i], 0, {.threads = 1 + round % 2});
       there[order[i]] = 0;
       EXPECT_EQ(report.scans_added, 1U);
       EXPECT_EQ(report.scans, there.size());
@@ -52,10 +54,12 @@ TEST_F(MapChange, ExtendingPassesOverWhatIsThere) {
 
 TEST_F(MapChange, RetractingAScanLeavesNoTraceOfIt) {
   build({{0, 0}, {1, 0}, {2, 0}});
-  EXPECT_EQ(retract(1).scans_removed, 1U);
-  expectExact({{0, 0}, {2, 0}});
-  extend(1, 0);
-  expectExact({{0, 0}, {1, 0}, {2, 0}});
+  for (const unsigned threads : {1U, 2U}) {
+    EXPECT_EQ(retract(1, {.threads = threads}).scans_removed, 1U);
+    expectExact({{0, 0}, {2, 0}});
+    extend(1, 0, {.threads = threads});
+    expectExact({{0, 0}, {1, 0}, {2, 0}});
+  }
 }
 
 /// Its bounds hold 10^11 tiles.
@@ -76,10 +80,12 @@ TEST_F(MapChange, AScanWithAPointFarAwayCanBeRetracted) {
 
 TEST_F(MapChange, MovedScansGiveTheBuildWithTheirNewPoses) {
   build({{0, 0}, {1, 0}, {2, 0}, {3, 0}});
-  EXPECT_EQ(move({{1, 1}, {3, -1}}).scans_moved, 2U);
-  expectExact({{0, 0}, {1, 1}, {2, 0}, {3, -1}});
-  move({{1, 0}, {3, 0}});
-  expectExact({{0, 0}, {1, 0}, {2, 0}, {3, 0}});
+  for (const unsigned threads : {1U, 2U}) {
+    EXPECT_EQ(move({{1, 1}, {3, -1}}, {.threads = threads}).scans_moved, 2U);
+    expectExact({{0, 0}, {1, 1}, {2, 0}, {3, -1}});
+    move({{1, 0}, {3, 0}}, {.threads = threads});
+    expectExact({{0, 0}, {1, 0}, {2, 0}, {3, 0}});
+  }
   EXPECT_EQ(move({{1, 0}}).scans_moved, 0U);
   // All scans see the same place, so that they move at once.
   const std::size_t runs = activitiesIn(MapReader(map()).quads()).size();
@@ -88,12 +94,11 @@ TEST_F(MapChange, MovedScansGiveTheBuildWithTheirNewPoses) {
 }
 
 TEST_F(MapChange, ARandomSequenceOfOperationsKeepsTheMapExact) {
-  const bool is_long = std::getenv("CLUXEL_LONG_TESTS") != nullptr;
   std::mt19937 random(7);
   const auto below = [&random](std::size_t count) { return static_cast<std::size_t>(random() % count); };
   Poses there{{0, 0}};
   build(there);
-  for (int step = 0; step < (is_long ? 50 : 10); ++step) {
+  for (int step = 0; step < (isLong() ? 50 : 10); ++step) {
     const std::size_t scan = below(kScans);
     const int pose = static_cast<int>(below(3)) - 1;
     if (!there.contains(scan)) {

@@ -66,11 +66,13 @@ TEST_F(MapMerge, OfTwoToFourMapsInAnyOrderIsTheBuildFromAllScans) {
   const fs::path bc = built({1, 2}, "bc"), ad = built({3, 0}, "ad"), abc = built({0, 1, 2}, "abc");
   const std::vector<std::vector<MapToMerge>> splits{{{a}, {bc}, {d}}, {{d}, {abc}}, {{bc}, {ad}}, {{d}, {c}, {b}, {a}}};
   for (const auto& maps : splits) {
-    fs::remove(target());
-    const ChangeReport report = merge(maps);
-    EXPECT_EQ(report.scans, 4U);
-    EXPECT_TRUE(canonicalText(target()) == *whole) << maps.front().file;
-    EXPECT_FALSE(fs::exists(target().string() + ".merging"));
+    for (const unsigned threads : {1U, 2U}) {
+      fs::remove(target());
+      const ChangeReport report = merge(maps, {.change = {.threads = threads}, .use = std::nullopt, .force = false});
+      EXPECT_EQ(report.scans, 4U);
+      EXPECT_TRUE(canonicalText(target()) == *whole) << maps.front().file << ", " << threads << " threads";
+      EXPECT_FALSE(fs::exists(target().string() + ".merging"));
+    }
   }
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Maps of measured scans grow, merge, shrink and move, with one thread and with two. Each is then the map that a build
-// makes from nothing. The scans are those of a spinning laser and of a line scanner on a vehicle.
+// Maps of generated and of measured scans grow, merge, shrink and move: in random orders and splits, and each operation
+// with one thread and with two. Each is then the map that a build makes from nothing. Measured are the scans of a
+// spinning laser and of a line scanner on a vehicle. The long tests do each operation in 20 random ways.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,16 +14,13 @@
 
 #include "mapping/change/map_change.hpp"
 #include "mapping/change/map_merge.hpp"
+#include "mapping/long_tests.hpp"
 #include "mapping/small_campus.hpp"
 
 namespace cluxel::mapping {
 namespace {
 
 namespace fs = std::filesystem;
-
-bool isLong() {
-  return std::getenv("CLUXEL_LONG_TESTS") != nullptr;
-}
 
 /// The points of a scan for which `keeps(x, y)` holds, in the sensor's frame.
 template <typename Keeps>
@@ -41,19 +39,16 @@ Scan partOf(const Scan& scan, const Keeps& keeps) {
 /// Frames of KITTI, cut at some metres from the sensor.
 std::vector<Scan> framesOfKitti() {
   const ScanSet all = ScanSet::open({test::outsideDataFolder() / "kitti00"}, {}, silence());
-  const float range_m = isLong() ? 40 : 15;
+  const float range_m = isLong() ? 25 : 15;
   std::vector<Scan> scans;
-  for (std::size_t i = 0; i < std::min<std::size_t>(all.size(), isLong() ? 8 : 4); ++i)
+  for (std::size_t i = 0; i < std::min<std::size_t>(all.size(), isLong() ? 6 : 4); ++i)
     scans.push_back(partOf(all.load(i), [&](float x, float y) { return x * x + y * y < range_m * range_m; }));
   return scans;
 }
 
-/// Windows of a chunk of Oakland, each of which overlaps the next.
-std::vector<Scan> windowsOfOakland() {
-  const Scan chunk =
-      ScanSet::open({test::outsideDataFolder() / "oakland3d/oakland_part2_ac.xyz_label_conf"}, {}, silence()).load(0);
-  const std::size_t count = isLong() ? 6 : 4;
-  const float stride_m = isLong() ? 12 : 6, overlap_m = 4, width_m = isLong() ? 200 : 25;
+/// Windows of a chunk, each of which overlaps the next.
+std::vector<Scan> windowsOf(const Scan& chunk, std::size_t count) {
+  const float stride_m = isLong() ? 12 : 6, overlap_m = 4, width_m = isLong() ? 60 : 25;
   std::vector<float> x = chunk.points.x, y = chunk.points.y;
   std::nth_element(x.begin(), x.begin() + static_cast<std::ptrdiff_t>(x.size() / 2), x.end());
   std::nth_element(y.begin(), y.begin() + static_cast<std::ptrdiff_t>(y.size() / 2), y.end());
@@ -71,8 +66,33 @@ std::vector<Scan> windowsOfOakland() {
   return scans;
 }
 
+/// Windows of two chunks of Oakland, one after the other along the drive.
+std::vector<Scan> windowsOfOakland() {
+  std::vector<Scan> scans;
+  for (const char* chunk : {"ac", "ad"}) {
+    const fs::path file =
+        test::outsideDataFolder() / ("oakland3d/oakland_part2_" + std::string(chunk) + ".xyz_label_conf");
+    const std::vector<Scan> windows = windowsOf(ScanSet::open({file}, {}, silence()).load(0), isLong() ? 3 : 2);
+    scans.insert(scans.end(), windows.begin(), windows.end());
+  }
+  return scans;
+}
+
+std::vector<Scan> stopsOfCampus() {
+  const Campus campus = buildCampus({.seed = 12,
+                                     .stops = isLong() ? 6.0 : 4.0,
+                                     .size_m = isLong() ? 60.0 : 45.0,
+                                     .points_per_stop = 2500,
+                                     .max_range_m = isLong() ? 25.0 : 15.0});
+  const Laser laser(campus);
+  std::vector<Scan> scans;
+  for (std::size_t stop = 0; stop < campus.stops.size(); ++stop) scans.push_back(laser.scanAt(stop).scan);
+  return scans;
+}
+
 struct Sensor {
-  const char* data = nullptr;
+  const char* name = nullptr;
+  bool is_outside = true;  ///< in a folder of the name among the data from outside
   std::vector<Scan> (*scans)() = nullptr;
 };
 
@@ -81,8 +101,8 @@ class MeasuredChanges : public testing::TestWithParam<Sensor> {
   using Poses = std::map<std::size_t, int>;  ///< scan → number of its pose: 0 the given one, 1 a moved one
 
   void SetUp() override {
-    if (!fs::exists(test::outsideDataFolder() / GetParam().data))
-      GTEST_SKIP() << "outside data absent: " << GetParam().data;
+    if (GetParam().is_outside && !fs::exists(test::outsideDataFolder() / GetParam().name))
+      GTEST_SKIP() << "outside data absent: " << GetParam().name;
     std::vector<fs::path> files;
     for (const Scan& scan : GetParam().scans()) {
       ASSERT_GT(scan.points.size(), 2000U);
@@ -110,7 +130,11 @@ class MeasuredChanges : public testing::TestWithParam<Sensor> {
     buildMap(scans, inputs_, folder_.path() / name, params, silence());
     return folder_.path() / name;
   }
-  std::string fromScratch(const Poses& poses) const { return canonicalText(build(at(poses), "fresh.clx")); }
+  const std::string& fromScratch(const Poses& poses) {
+    const auto [entry, is_new] = built_.try_emplace(poses);
+    if (is_new) entry->second = canonicalText(build(at(poses), "fresh.clx"));
+    return entry->second;
+  }
   std::vector<std::size_t> shuffled() {
     std::vector<std::size_t> order(scans_->size());
     std::iota(order.begin(), order.end(), std::size_t{0});
@@ -118,10 +142,22 @@ class MeasuredChanges : public testing::TestWithParam<Sensor> {
     return order;
   }
   std::size_t below(std::size_t end) { return static_cast<std::size_t>(random_() % end); }
-  /// One and two threads in turn; the window may be as large as the map.
-  ChangeParams params() { return {.threads = 1 + (++operations_ % 2), .max_window_share = 2}; }
-  void count(const ChangeReport& report) { local_commits_ += report.local_commits; }
-  static int rounds() { return isLong() ? 6 : 1; }
+  static int rounds() { return isLong() ? 20 : 1; }
+
+  /// The window may be as large as the map.
+  static ChangeParams paramsOf(unsigned threads) { return {.threads = threads, .max_window_share = 2}; }
+
+  /// Lets `operation` change `map` with one thread, and what the map was before with two.
+  template <typename Operation>
+  void expectChanged(const fs::path& map, const std::string& expected, const Operation& operation) {
+    const fs::path before = folder_.path() / "before.clx";
+    fs::copy_file(map, before, fs::copy_options::overwrite_existing);
+    for (const unsigned threads : {1U, 2U}) {
+      if (threads == 2) fs::copy_file(before, map, fs::copy_options::overwrite_existing);
+      local_commits_ += operation(paramsOf(threads)).local_commits;
+      EXPECT_TRUE(canonicalText(map) == expected) << threads << " threads";
+    }
+  }
 
   ScratchFolder folder_;
   MapInputs inputs_ = shippedInputs();
@@ -129,37 +165,46 @@ class MeasuredChanges : public testing::TestWithParam<Sensor> {
   std::vector<ScanId> ids_;
   Poses all_;
   std::string expected_;
+  std::map<Poses, std::string> built_;
   std::mt19937 random_{11};
-  unsigned operations_ = 0;
   std::size_t local_commits_ = 0;  ///< of changes that were computed around what changed
 };
 
 TEST_P(MeasuredChanges, AnyOrderAndOneByOne) {
   for (int round = 0; round < rounds(); ++round) {
     const ScanSet scans = scans_->only(shuffled());
-    EXPECT_TRUE(canonicalText(build(scans, "map.clx", {.threads = 2, .batch_points = 1})) == expected_);
+    for (const unsigned threads : {1U, 2U})
+      EXPECT_TRUE(canonicalText(build(scans, "map.clx", {.threads = threads, .batch_points = 1})) == expected_);
     const std::vector<std::size_t> order = shuffled();
-    const fs::path map = build(scans_->only({order.front()}), "grown.clx");
-    for (std::size_t i = 1; i < order.size(); ++i) count(extendMap(map, scans_->only({order[i]}), params(), silence()));
-    EXPECT_TRUE(canonicalText(map) == expected_);
+    for (const unsigned threads : {1U, 2U}) {
+      const fs::path map = build(scans_->only({order.front()}), "grown.clx");
+      for (std::size_t i = 1; i < order.size(); ++i)
+        local_commits_ += extendMap(map, scans_->only({order[i]}), paramsOf(threads), silence()).local_commits;
+      EXPECT_TRUE(canonicalText(map) == expected_) << threads << " threads";
+    }
   }
   EXPECT_GT(local_commits_, 0U) << "no change was computed around what changed";
 }
 
+/// Into two, three and four maps.
 TEST_P(MeasuredChanges, MergesOfAnySplitInAnyOrder) {
-  for (int round = 0; round < 2 * rounds(); ++round) {
+  for (int round = 0; round < (isLong() ? rounds() : 2); ++round) {
     const std::vector<std::size_t> order = shuffled();
-    const std::size_t parts = 2 + below(std::min<std::size_t>(3, order.size() - 1));
+    const std::size_t parts = 2 + static_cast<std::size_t>(2 * round % 3);
     std::vector<std::vector<std::size_t>> split(parts);
     for (std::size_t i = 0; i < order.size(); ++i) split[i < parts ? i : below(parts)].push_back(order[i]);
     std::vector<MapToMerge> maps;
     for (std::size_t i = 0; i < parts; ++i)
       maps.push_back({build(scans_->only(split[i]), "part" + std::to_string(i) + ".clx")});
-    fs::remove(folder_.path() / "merged.clx");
-    MergeParams merge;
-    merge.change = params();
-    mergeMaps(maps, folder_.path() / "merged.clx", merge, silence());
-    EXPECT_TRUE(canonicalText(folder_.path() / "merged.clx") == expected_) << parts << " maps";
+    std::shuffle(maps.begin(), maps.end(), random_);
+    for (const unsigned threads : {1U, 2U}) {
+      MergeParams merge;
+      merge.change = paramsOf(threads);
+      merge.force = true;
+      mergeMaps(maps, folder_.path() / "merged.clx", merge, silence());
+      EXPECT_TRUE(canonicalText(folder_.path() / "merged.clx") == expected_)
+          << parts << " maps, " << threads << " threads";
+    }
   }
 }
 
@@ -169,10 +214,10 @@ TEST_P(MeasuredChanges, RetractedAndExtendedAgain) {
     const std::size_t scan = below(scans_->size());
     Poses without = all_;
     without.erase(scan);
-    count(retractScans(map, {ids_[scan]}, params(), silence()));
-    EXPECT_TRUE(canonicalText(map) == fromScratch(without));
-    count(extendMap(map, scans_->only({scan}), params(), silence()));
-    EXPECT_TRUE(canonicalText(map) == expected_);
+    expectChanged(map, fromScratch(without),
+                  [&](const ChangeParams& params) { return retractScans(map, {ids_[scan]}, params, silence()); });
+    expectChanged(map, expected_,
+                  [&](const ChangeParams& params) { return extendMap(map, scans_->only({scan}), params, silence()); });
   }
   EXPECT_GT(local_commits_, 0U) << "no change was computed around what changed";
 }
@@ -189,17 +234,20 @@ TEST_P(MeasuredChanges, HalfOfThePosesMovedAndCorrected) {
       moved.push_back({ids_[order[i]], poseOf(order[i], 1)});
       back.push_back({ids_[order[i]], poseOf(order[i], 0)});
     }
-    EXPECT_EQ(moveScans(map, moved, params(), silence()).scans_moved, moved.size());
-    EXPECT_TRUE(canonicalText(map) == fromScratch(poses));
-    count(moveScans(map, back, params(), silence()));
-    EXPECT_TRUE(canonicalText(map) == expected_);
+    for (const auto& [moves, expected] : {std::pair(moved, fromScratch(poses)), std::pair(back, expected_)})
+      expectChanged(map, expected, [&](const ChangeParams& params) {
+        const ChangeReport report = moveScans(map, moves, params, silence());
+        EXPECT_EQ(report.scans_moved, moves.size());
+        return report;
+      });
   }
   EXPECT_GT(local_commits_, 0U) << "no change was computed around what changed";
 }
 
 INSTANTIATE_TEST_SUITE_P(Sensors, MeasuredChanges,
-                         testing::Values(Sensor{"kitti00", framesOfKitti}, Sensor{"oakland3d", windowsOfOakland}),
-                         [](const auto& info) { return std::string(info.param.data); });
+                         testing::Values(Sensor{"campus", false, stopsOfCampus}, Sensor{"kitti00", true, framesOfKitti},
+                                         Sensor{"oakland3d", true, windowsOfOakland}),
+                         [](const auto& info) { return std::string(info.param.name); });
 
 }  // namespace
 }  // namespace cluxel::mapping

@@ -17,6 +17,7 @@
 #include "mapping/change/statement_change.hpp"
 #include "mapping/far_rays.hpp"
 #include "mapping/layers/semantic_state.hpp"
+#include "mapping/long_tests.hpp"
 #include "mapping/map_tables.hpp"
 #include "mapping/small_campus.hpp"
 
@@ -173,7 +174,8 @@ struct MergeCase {
   std::size_t max_border_tiles = MergeParams{}.max_border_tiles;
 };
 
-/// Merges maps and compares the result with a build. Returns how many maps were taken over.
+/// Merges maps and compares the result with a build; long tests, with the other number of threads, too. Returns how
+/// many maps were taken over.
 std::size_t mergeAndCompare(const Street& street, const MergeCase& what, std::mt19937& random) {
   std::vector<MapToMerge> maps;
   std::set<std::size_t> all;
@@ -195,13 +197,17 @@ std::size_t mergeAndCompare(const Street& street, const MergeCase& what, std::mt
   const fs::path whole = street.builtOf(all, "whole", statements);
   MergeParams params;
   params.force = true;
-  params.change.threads = what.threads;
   params.change.max_window_share = what.max_window_share;
   params.change.whole_cluxels = what.whole_cluxels;
   params.max_border_tiles = what.max_border_tiles;
-  const ChangeReport report = mergeMaps(maps, street.merged(), params, silence());
-  EXPECT_TRUE(canonicalText(street.merged()) == canonicalText(whole));
-  EXPECT_TRUE(blocksOf(street.merged()) == blocksOf(whole));
+  ChangeReport report;
+  for (const unsigned threads : {3 - what.threads, what.threads}) {
+    if (threads != what.threads && !isLong()) continue;
+    params.change.threads = threads;
+    report = mergeMaps(maps, street.merged(), params, silence());
+    EXPECT_TRUE(canonicalText(street.merged()) == canonicalText(whole)) << threads << " threads";
+    EXPECT_TRUE(blocksOf(street.merged()) == blocksOf(whole)) << threads << " threads";
+  }
   const MapReader built(whole), merged(street.merged());
   const auto state = storedSemanticState(built.transaction()).value();
   EXPECT_EQ(report.scans, all.size());
@@ -243,14 +249,13 @@ TEST(MergeOfStreets, AddsAMapWithALongBorderScanByScan) {
 }
 
 TEST(MergeOfStreets, OfAnyPartsIsTheBuildFromAllScans) {
-  const bool is_long = std::getenv("CLUXEL_LONG_TESTS") != nullptr;
   std::size_t taken = 0;
-  for (std::uint32_t seed = 1; seed <= (is_long ? 100U : 4U); ++seed) {
+  for (std::uint32_t seed = 1; seed <= (isLong() ? 100U : 4U); ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937 random(seed);
     const auto below = [&](std::size_t count) { return random() % count; };
     const Street street(20 + seed, seed % 3 == 0 ? Times::Unknown : Times::Known, 6 + static_cast<double>(below(4)));
-    std::vector<std::set<std::size_t>> parts(2 + below(2));
+    std::vector<std::set<std::size_t>> parts(2 + below(isLong() ? 3 : 2));
     // Stretches of random length; some scans are in another map, too, or in it alone.
     for (std::size_t scan = 0, part = 0; scan < street.size(); ++scan) {
       const std::size_t left = parts.size() - 1 - part;
