@@ -19,6 +19,7 @@
 #include "mapping/statements/refused_quad.hpp"
 #include "mapping/statements/stated_subjects.hpp"
 #include "mapping/statements/stated_values.hpp"
+#include "mapping/statements/statement_facts.hpp"
 #include "mapping/statements/statement_history.hpp"
 #include "rdf/file/map_replacement.hpp"
 #include "rdf/map_iris.hpp"
@@ -84,6 +85,7 @@ ChangeReport inferAfterUpdate(rdf::WriteTransaction& transaction, const std::set
   if (!parsed.rules.asks_map && !has_news) {
     inferFacts(transaction, parsed.inputs, sink, check);
     tellMap(report, transaction);
+    report.statements = toldOutcomes(rdf::QuadReader(static_cast<const rdf::ReadTransaction&>(transaction)));
     return report;
   }
   const double started_s = secondsNow();
@@ -129,6 +131,7 @@ MapUpdateReport updateMap(const std::filesystem::path& file, const std::string& 
     }
     check(0);
   }
+  if (is_map && !report.change.has_changes) tellMap(report.change, transaction);
   if (is_map) noteStandingQuads(transaction, before, notes);
   if (!params.dry_run) transaction.commit();
   notes.give();
