@@ -26,6 +26,7 @@ inline Box boxFrom(const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
 struct BoxVisit {
   std::vector<Box> boxes;
   std::vector<Eigen::Vector3d> sensors;  ///< [m, map]
+  std::vector<Box> black = {};           ///< rays that end on them do not return
 };
 
 /// The range at which a ray meets a box; infinite when it does not.
@@ -36,7 +37,7 @@ inline double rangeTo(const Box& box, const Eigen::Vector3d& from, const Eigen::
 }
 
 /// Rays every 0.6 degrees around and every 1.2 degrees up to 40 degrees above and below the horizon, errors of 8 mm.
-inline scan::Scan scanOf(const std::vector<Box>& boxes, const Eigen::Vector3d& sensor, unsigned seed) {
+inline scan::Scan scanOf(const BoxVisit& visit, const Eigen::Vector3d& sensor, unsigned seed) {
   constexpr double kDegree = std::numbers::pi / 180;
   std::mt19937 random(seed);
   std::normal_distribution<double> error(0, 0.008);
@@ -48,9 +49,12 @@ inline scan::Scan scanOf(const std::vector<Box>& boxes, const Eigen::Vector3d& s
       const double up = (-40.1 + 1.2 * row) * kDegree, around = (0.6 * column + 0.1) * kDegree;
       const Eigen::Vector3d way(std::cos(up) * std::cos(around), std::cos(up) * std::sin(around), std::sin(up));
       double range_m = way.z() < 0 ? -sensor.z() / way.z() : std::numeric_limits<double>::infinity();
-      for (const Box& box : boxes) range_m = std::min(range_m, rangeTo(box, sensor, way));
+      for (const Box& box : visit.boxes) range_m = std::min(range_m, rangeTo(box, sensor, way));
       if (range_m > 40) continue;
       const Eigen::Vector3f end = ((range_m + error(random)) * way).cast<float>();
+      const bool returns = std::none_of(visit.black.begin(), visit.black.end(),
+                                        [&](const Box& box) { return rangeTo(box, sensor, way) <= range_m; });
+      if (!returns) continue;
       scan.points.x.push_back(end.x()), scan.points.y.push_back(end.y()), scan.points.z.push_back(end.z());
     }
   return scan;
@@ -64,7 +68,7 @@ inline void writeVisits(const std::vector<BoxVisit>& visits, const std::filesyst
   for (std::size_t visit = 0; visit < visits.size(); ++visit)
     for (const Eigen::Vector3d& sensor : visits[visit].sensors) {
       const auto number = static_cast<unsigned>(poses.size());
-      const scan::Scan scan = scanOf(visits[visit].boxes, sensor, number);
+      const scan::Scan scan = scanOf(visits[visit], sensor, number);
       scan::writeScanFile(scan, folder / ("scan_" + std::to_string(100 + number) + ".pcd"));
       times_s.push_back(1.7e9 + 86400.0 * static_cast<double>(visit) + 10 * number);
       poses.push_back(scan.T_map_sensor);

@@ -66,7 +66,7 @@ ExitCode route(const WayArguments& arguments, Session& session) {
 ExitCode reach(const WayArguments& arguments, Session& session) {
   const mapping::MapReader map = openMap(arguments, session);
   const Eigen::Vector2d from = tasks::placeNamed(map, arguments.from);
-  const tasks::TerrainGrid terrain = terrainOf(map, arguments.request.terrain);
+  const tasks::TerrainGrid terrain = terrainIn(map, arguments.request);
   const tasks::PassableGrid grid = passableIn(map, terrain, arguments.request);
   const double reach_m = arguments.minutes * 60 * arguments.speed_m_s;
   const std::vector<double> walk_m = walkLengths(grid, from, reach_m);

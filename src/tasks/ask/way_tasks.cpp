@@ -84,7 +84,7 @@ TaskAnswer runRoute(const TaskContext& context, const TaskValues& values) {
 TaskAnswer runReach(const TaskContext& context, const TaskValues& values) {
   const mapping::MapReader& map = context.map;
   const WayRequest request = wayRequestOf(values);
-  const TerrainGrid terrain = terrainOf(map, request.terrain);
+  const TerrainGrid terrain = terrainIn(map, request);
   const PassableGrid grid = passableIn(map, terrain, request);
   const double speed_m_s = values.number("speed"), reach_m = values.number("minutes") * 60 * speed_m_s;
   const std::vector<double> walk_m = walkLengths(grid, placeNamed(map, values.text("from")), reach_m);

@@ -136,7 +136,7 @@ SearchAnswer searchFor(const mapping::MapReader& map, const SearchRequest& reque
   const std::string class_iri = classNamed(map, ontology, request.class_name);
   requireClassOfObjects(map, ontology, class_iri);
   const Eigen::Vector2d from = request.from.empty() ? lastStop(map) : placeNamed(map, request.from);
-  const TerrainGrid terrain = terrainOf(map, request.ways.terrain);
+  const TerrainGrid terrain = terrainIn(map, request.ways);
   const PassableGrid grid = passableIn(map, terrain, request.ways);
   const std::vector<bool> is_left_out = leftOut(map, request.ways);
   const std::vector<bool> is_gone = request.ways.with_gone ? std::vector<bool>(map.objects().size()) : goneAmong(map);

@@ -53,7 +53,7 @@ void normalise(SearchField& field) {
 
 NextViewAnswer nextViews(const mapping::MapReader& map, const NextViewRequest& request) {
   const Eigen::Vector2d from = request.from.empty() ? lastStop(map) : placeNamed(map, request.from);
-  const TerrainGrid terrain = terrainOf(map, request.ways.terrain);
+  const TerrainGrid terrain = terrainIn(map, request.ways);
   const PassableGrid grid = passableIn(map, terrain, request.ways);
   SearchParams search;
   search.view_m = request.view_m;

@@ -24,9 +24,12 @@ struct WayRequest {
 /// Per object: whether the request leaves it out. Throws as passableIn().
 std::vector<bool> leftOut(const mapping::MapReader& map, const WayRequest& request);
 
+/// The terrain of a request: what it leaves out is no ground. Throws as passableIn().
+TerrainGrid terrainIn(const mapping::MapReader& map, const WayRequest& request);
+
 /// Throws Error (NotFound) for a class that the map's ontology does not know, and where there is nothing to stay near.
 PassableGrid passableIn(const mapping::MapReader& map, const WayRequest& request);
-/// The same with a terrain that is there already.
+/// The same with the terrain of the request that is there already.
 PassableGrid passableIn(const mapping::MapReader& map, const TerrainGrid& terrain, const WayRequest& request);
 
 /// "X,Y" in metres of the map frame, or an object: its IRI, at least four digits of its hash, or "#17". Throws Error

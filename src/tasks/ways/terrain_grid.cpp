@@ -183,9 +183,10 @@ class LowPoints {
   std::vector<std::uint32_t> first_;  ///< of each cell's points
 };
 
-/// Visits the points of all tiles: low ones refine the ground, others become things.
-std::vector<CellThing> thingsOf(const mapping::MapReader& map, const TerrainParams& params, const TerrainGrid& grid,
-                                LowPoints& low) {
+/// Visits the points of all tiles: low ones refine the ground, others become things. The foot of what is left out is no
+/// ground, or it would stay as a step.
+std::vector<CellThing> thingsOf(const mapping::MapReader& map, const TerrainParams& params,
+                                const std::vector<bool>& is_left_out, const TerrainGrid& grid, LowPoints& low) {
   const mapping::TileStages& stages = map.stagesWithPoints();
   const std::vector<bool> is_surface = surfacesAmong(map);
   const auto object_of = mapping::objectOfCluxel({map.objects(), {}}, map.scene().cluxels.size());
@@ -201,10 +202,12 @@ std::vector<CellThing> thingsOf(const mapping::MapReader& map, const TerrainPara
       const auto above = static_cast<float>(points.z[i] - groundHeightAt(ring, points.x[i], points.y[i]));
       const std::uint32_t object = object_of[first + tile.point_cluxel[i]];
       const bool is_ground = object != mapping::kNoObject && is_surface[object];
-      if (std::abs(above) < params.lowest_m)
-        low.add(*cell, corner + Eigen::Vector3d(points.x[i], points.y[i], points.z[i] - corner.z()));
-      else if (!is_ground && above > 0 && above <= params.highest_m)
+      const bool counts = object == mapping::kNoObject || is_ground || is_left_out.empty() || !is_left_out[object];
+      if (std::abs(above) < params.lowest_m) {
+        if (counts) low.add(*cell, corner + Eigen::Vector3d(points.x[i], points.y[i], points.z[i] - corner.z()));
+      } else if (!is_ground && above > 0 && above <= params.highest_m) {
         found.push_back({*cell, object == mapping::kNoObject ? kUnnamedThing : object});
+      }
     }
     first += static_cast<std::uint32_t>(tile.size());
   }
@@ -219,7 +222,8 @@ std::optional<std::uint32_t> GridFrame::cellAt(const Eigen::Vector2d& p_map) con
   return index(static_cast<int>(column), static_cast<int>(row));
 }
 
-TerrainGrid terrainOf(const mapping::MapReader& map, const TerrainParams& params) {
+TerrainGrid terrainOf(const mapping::MapReader& map, const TerrainParams& params,
+                      const std::vector<bool>& is_left_out) {
   TerrainGrid grid;
   grid.frame = params.area ? frameOfArea(*params.area, params.cell_m) : frameOf(map.stages(), params.cell_m);
   const std::size_t size = grid.frame.size();
@@ -227,7 +231,7 @@ TerrainGrid terrainOf(const mapping::MapReader& map, const TerrainParams& params
   grid.seen.assign(size, 0);
   fillGround(map.stages(), grid);
   LowPoints low(grid);
-  std::vector<CellThing> found = thingsOf(map, params, grid, low);
+  std::vector<CellThing> found = thingsOf(map, params, is_left_out, grid, low);
   low.refine(grid);
   for (float& height : grid.height)
     if (std::isnan(height)) height = 0;

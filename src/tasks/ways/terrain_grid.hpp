@@ -55,7 +55,10 @@ struct TerrainParams {
 };
 inline constexpr double kSeenReach_m = 1.0;
 
-/// From the map's thinned points and ground surface. Objects of surface classes are no things. Cost: in the points.
-TerrainGrid terrainOf(const mapping::MapReader& map, const TerrainParams& params = {});
+/// From the map's thinned points and ground surface. Objects of surface classes are no things. `is_left_out`: per
+/// object, true where its points do not count for the height of the ground; empty: all points count. The things are
+/// the same whatever is left out. Cost: in the points.
+TerrainGrid terrainOf(const mapping::MapReader& map, const TerrainParams& params = {},
+                      const std::vector<bool>& is_left_out = {});
 
 }  // namespace cluxel::tasks

@@ -86,8 +86,12 @@ std::vector<bool> leftOut(const mapping::MapReader& map, const WayRequest& reque
   return is_left_out;
 }
 
+TerrainGrid terrainIn(const mapping::MapReader& map, const WayRequest& request) {
+  return terrainOf(map, request.terrain, leftOut(map, request));
+}
+
 PassableGrid passableIn(const mapping::MapReader& map, const WayRequest& request) {
-  return passableIn(map, terrainOf(map, request.terrain), request);
+  return passableIn(map, terrainIn(map, request), request);
 }
 
 PassableGrid passableIn(const mapping::MapReader& map, const TerrainGrid& terrain, const WayRequest& request) {
