@@ -18,12 +18,32 @@ std::vector<std::string> keysOf(const Json& json) {
   return keys;
 }
 
-TEST(ChangesJson, HasNullForTheNamesOfSomethingUnnamed) {
+class ChangesJson : public testing::Test {
+ protected:
+  static mapping::MapReader mapIn(const std::filesystem::path& folder) {
+    const mapping::SmallCampus campus({.seed = 5, .stops = 1, .size_m = 45, .points_per_stop = 1200});
+    const std::filesystem::path file = folder / "map.clx";
+    buildMap(mapping::scansOf(campus.files()), mapping::shippedInputs(), file, {}, mapping::silence());
+    return mapping::MapReader(file);
+  }
+
   const rdf::ScratchFolder folder;
-  const mapping::SmallCampus campus({.seed = 5, .stops = 1, .size_m = 45, .points_per_stop = 1200});
-  const std::filesystem::path file = folder.path() / "map.clx";
-  buildMap(mapping::scansOf(campus.files()), mapping::shippedInputs(), file, {}, mapping::silence());
-  const mapping::MapReader map(file);
+  const mapping::MapReader map = mapIn(folder.path());
+};
+
+TEST_F(ChangesJson, TellsHowSureAStateIsAndOfHowMuchOfTheObject) {
+  SiteChanges found;
+  found.states.resize(1);
+  found.states[0].after = perception::PresenceState::Absent;
+  found.states[0].log_odds_after = -81.234, found.states[0].coverage_after = 0.9684;
+  const Json state = Json::parse(changesJson(map, found)).at("states").at(0);
+  EXPECT_EQ(state.at("after"), "absent");
+  EXPECT_EQ(state.at("log_odds_after"), -81.23);
+  EXPECT_EQ(state.at("coverage_after"), 0.97);
+  EXPECT_EQ(state.at("coverage_before"), 0);
+}
+
+TEST_F(ChangesJson, HasNullForTheNamesOfSomethingUnnamed) {
   const Eigen::AlignedBox3d box(Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(1, 2, 3));
   const ChangedThing named{{1, 2}, 0, true, box}, unnamed{{3}, std::nullopt, false, box};
   SiteChanges found;

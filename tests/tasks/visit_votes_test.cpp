@@ -125,6 +125,26 @@ TEST(ObjectStates, AreTheSameWhetherLaterScansThatHitTheThingAreCompared) {
   }
 }
 
+TEST(ObjectStates, TellOfWhichShareOfThePlacesTheirScansTell) {
+  using perception::PresenceState;
+  const auto after = [&](const std::vector<perception::ScanVotes>& later) {
+    std::vector<perception::ScanVotes> votes{vote(0, 100, 0)};
+    votes.insert(votes.end(), later.begin(), later.end());
+    const ObjectStates states = statesOf(votes, 4000);
+    EXPECT_EQ(states.coverage_before, 1);
+    return std::pair(states.after, states.coverage_after);
+  };
+  EXPECT_EQ(after({vote(4000, 0, 0)}), std::pair(PresenceState::NotObserved, 0.0));
+  EXPECT_EQ(after({vote(4000, 0, 60)}), std::pair(PresenceState::Absent, 0.6));
+  EXPECT_EQ(after({vote(4000, 0, 60), vote(4060, 0, 80)}), std::pair(PresenceState::Absent, 0.8)) << "both see it";
+  EXPECT_EQ(after({vote(4000, 30, 0), vote(4060, 40, 0)}), std::pair(PresenceState::Present, 0.4));
+  EXPECT_EQ(after({vote(4000, 90, 0), vote(8000, 0, 70)}), std::pair(PresenceState::Absent, 0.7)) << "since it left";
+  for (std::size_t places = 0; places <= 100; ++places) {
+    const auto [state, coverage] = after({vote(4000, 0, places)});
+    EXPECT_EQ(state == PresenceState::Absent, coverage >= perception::PresenceParams{}.min_share) << places;
+  }
+}
+
 TEST(ObjectStates, OneLaterScanTellsThatAllOfAThingIsGone) {
   const auto isAllGone = [&](std::size_t hits, std::size_t seen_through) {
     const std::vector<perception::ScanVotes> votes{vote(0, 100, 0), vote(4000, hits, seen_through)};

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // `cluxel changes`: what vanished, appeared and moved between visits.
+#include <cmath>
+
 #include "app/command.hpp"
 #include "app/map_condition.hpp"
 #include "app/shared_options.hpp"
@@ -19,16 +21,22 @@ struct ChangesArguments {
   bool states = false, allow_unfinished = false;
 };
 
-void printState(perception::PresenceState before, perception::PresenceState after, const std::string& thing) {
-  std::printf("%-12s -> %-12s  %s\n", std::string(nameOf(before)).c_str(), std::string(nameOf(after)).c_str(),
-              thing.c_str());
+/// "absent 97 %": what is known of how many of its places.
+std::string stateText(perception::PresenceState state, double coverage) {
+  return std::string(nameOf(state)) + " " + std::to_string(std::lround(coverage * 100)) + " %";
+}
+
+void printState(const std::string& before, const std::string& after, const std::string& thing) {
+  std::printf("%-18s -> %-18s  %s\n", before.c_str(), after.c_str(), thing.c_str());
 }
 
 void printStates(const mapping::MapReader& map, const tasks::SiteChanges& found) {
   for (const tasks::ObjectStates& states : found.states)
-    printState(states.before, states.after, tasks::thingName(map, states.object));
+    printState(stateText(states.before, states.coverage_before), stateText(states.after, states.coverage_after),
+               tasks::thingName(map, states.object));
   for (const tasks::PartStates& states : statesOfParts(found))
-    printState(states.before, states.after, "part of " + tasks::thingName(map, *states.part->object));
+    printState(std::string(nameOf(states.before)), std::string(nameOf(states.after)),
+               "part of " + tasks::thingName(map, *states.part->object));
 }
 
 void printChanges(const mapping::MapReader& map, const tasks::SiteChanges& found) {

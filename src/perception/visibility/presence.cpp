@@ -125,22 +125,36 @@ std::string_view nameOf(PresenceState state) {
   return kNames[static_cast<std::size_t>(state)];
 }
 
+namespace {
+
+/// The share of the places of a thing that scans hit or saw through.
+double coverageOf(std::span<const ScanVotes> votes, const Visibility& thing) {
+  PlaceSet told;
+  for (const ScanVotes& vote : votes) told |= vote.hits | vote.seen_through;
+  return thing.places.none() ? 0 : count(told & thing.places) / count(thing.places);
+}
+
+}  // namespace
+
 StateAtEnd stateAtEnd(std::span<const ScanVotes> votes, std::span<const std::uint32_t> visits, const Visibility& thing,
                       const PresenceParams& params) {
-  const auto logOddsOf = [&](std::span<const ScanVotes> some) {
-    return logOddsOfPresence(some, thing.share_of_hits, params);
+  const auto told = [&](PresenceState state, std::span<const ScanVotes> some) {
+    return StateAtEnd{state, logOddsOfPresence(some, thing.share_of_hits, params), coverageOf(some, thing)};
   };
   const auto there = timesOf(votes, thing, params);
+  const auto present = [&] {
+    const auto while_there = votes.subspan(there->begin, there->end - there->begin);
+    return StateAtEnd{PresenceState::Present, there->log_odds, coverageOf(while_there, thing)};
+  };
   if (there) {
     const auto end = std::upper_bound(visits.begin(), visits.end(), visits[there->end - 1]);
     const auto later = votes.subspan(static_cast<std::size_t>(end - visits.begin()));
-    if (showAbsence(later, thing, params)) return {PresenceState::Absent, logOddsOf(later)};
-    if (there->log_odds >= params.decided) return {PresenceState::Present, there->log_odds};
+    if (showAbsence(later, thing, params)) return told(PresenceState::Absent, later);
+    if (there->log_odds >= params.decided) return present();
   }
   // Weak evidence for the thing does not outweigh what shows that it is gone.
-  if (showAbsence(votes, thing, params)) return {PresenceState::Absent, logOddsOf(votes)};
-  return there ? StateAtEnd{PresenceState::Present, there->log_odds}
-               : StateAtEnd{PresenceState::NotObserved, logOddsOf(votes)};
+  if (showAbsence(votes, thing, params)) return told(PresenceState::Absent, votes);
+  return there ? present() : told(PresenceState::NotObserved, votes);
 }
 
 }  // namespace cluxel::perception

@@ -80,6 +80,9 @@ std::string_view nameOf(PresenceState state);  ///< "not observed"
 struct StateAtEnd {
   PresenceState state = PresenceState::NotObserved;
   double log_odds = 0;  ///< of "there", from the scans that tell the state; from all when they do not tell it
+  /// The share of its places that these scans hit or saw through, in [0, 1]. Of a thing that is there, the scans from
+  /// the first to the last time that it was there count.
+  double coverage = 0;
 };
 
 /// The state of a thing at the end of some scans: absent when its place was seen through after the visit that ends the

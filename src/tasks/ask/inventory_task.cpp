@@ -114,10 +114,11 @@ TaskRow changeRow(const mapping::MapReader& map, const SiteChange& change) {
 
 /// How sure it is that an object was there before and is there now.
 std::string presenceLine(const ObjectStates& states) {
-  std::array<char, 128> line{};
-  std::snprintf(line.data(), line.size(), "before: %s (log-odds %.1f), since: %s (%.1f)",
-                std::string(nameOf(states.before)).c_str(), states.log_odds_before,
-                std::string(nameOf(states.after)).c_str(), states.log_odds_after);
+  std::array<char, 160> line{};
+  std::snprintf(line.data(), line.size(),
+                "before: %s (log-odds %.1f, %.0f %% of its places), since: %s (%.1f, %.0f %% of its places)",
+                std::string(nameOf(states.before)).c_str(), states.log_odds_before, states.coverage_before * 100,
+                std::string(nameOf(states.after)).c_str(), states.log_odds_after, states.coverage_after * 100);
   return line.data();
 }
 

@@ -46,6 +46,7 @@ ObjectStates statesOf(std::uint32_t object, std::span<const perception::ScanVote
   const perception::StateAtEnd at_end_before = stateAtEnd(before, all_visits.first(scans_before), thing, kParams),
                                at_end_after = stateAtEnd(after, all_visits.subspan(scans_before), thing, kParams);
   states.before = at_end_before.state, states.log_odds_before = at_end_before.log_odds;
+  states.coverage_before = at_end_before.coverage, states.coverage_after = at_end_after.coverage;
   states.after = at_end_after.state, states.log_odds_after = at_end_after.log_odds;
   const bool left = states.before == PresenceState::Present && states.after == PresenceState::Absent;
   const bool came = states.before == PresenceState::Absent && states.after == PresenceState::Present;

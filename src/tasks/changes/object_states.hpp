@@ -17,6 +17,7 @@ struct ObjectStates {
   perception::PresenceState before = perception::PresenceState::NotObserved,
                             after = perception::PresenceState::NotObserved;
   double log_odds_before = 0, log_odds_after = 0;  ///< of "there", from the scans that tell the states
+  double coverage_before = 0, coverage_after = 0;  ///< share of its places that these scans hit or saw through
   /// Present at the end of one time and absent at that of the other, though it was surely there on an earlier visit of
   /// that other time. Scans of one visit that see through a thin thing do not tell that it left.
   bool was_away = false;

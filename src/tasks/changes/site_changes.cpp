@@ -303,6 +303,8 @@ std::string changesJson(const mapping::MapReader& map, const SiteChanges& found)
     entry["after"] = nameOf(states.after);
     entry["log_odds_before"] = std::round(states.log_odds_before * 100) / 100;
     entry["log_odds_after"] = std::round(states.log_odds_after * 100) / 100;
+    entry["coverage_before"] = std::round(states.coverage_before * 100) / 100;
+    entry["coverage_after"] = std::round(states.coverage_after * 100) / 100;
     json["states"].push_back(std::move(entry));
   }
   json["parts"] = ChangeJson::array();
