@@ -54,6 +54,12 @@ void bindObjects(py::module_& module) {
       .def_readonly("heading_rad", &Object::heading_rad,
                     "Direction of its longer side, from the x axis of the map towards y [rad].")
       .def_readonly("parts", &Object::parts, "Its parts, sorted by IRI: list of ObjectPart.")
+      .def_readonly("first_seen", &Object::first_seen,
+                    "Time of the first scan that speaks for it: str, xsd:dateTime in UTC, or None.")
+      .def_readonly("last_seen", &Object::last_seen, "Time of the last scan that speaks for it, or None.")
+      .def_readonly("seen_through", &Object::seen_through,
+                    "It is gone: time of the first scan after last_seen that saw through its place. None: it is not\n"
+                    "known to be gone.")
       .def("__repr__", [](const Object& object) { return extentRepr(object, "Object", object.label); });
 }
 

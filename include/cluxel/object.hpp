@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -43,6 +44,10 @@ struct Object : Extent {
   std::string rule;               ///< the rule that made it
   double heading_rad = 0;         ///< direction of its longer side, from the x axis towards y
   std::vector<ObjectPart> parts;  ///< sorted by IRI; empty when its rule names no parts
+  /// Times (xsd:dateTime in UTC) of the first and the last scan that speak for it. Absent where the map has fewer than
+  /// two scans with a time and a pose, and of ground.
+  std::optional<std::string> first_seen, last_seen;
+  std::optional<std::string> seen_through;  ///< it is gone: the time of the first scan after that saw through its place
 };
 
 }  // namespace cluxel

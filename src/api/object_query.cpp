@@ -41,6 +41,11 @@ Extent extentOf(const Answer::Row& row) {
   return extent;
 }
 
+std::optional<std::string> timeOf(const Answer::Row& row, std::string_view variable) {
+  const Term* term = row.find(variable);
+  return term == nullptr ? std::nullopt : std::optional(term->text);
+}
+
 std::string labelOf(const rdf::OntologyView& ontology, const std::string& class_iri) {
   const rdf::OntologyClass* found = ontology.find(class_iri);
   return found == nullptr ? rdf::localName(class_iri) : found->label();
@@ -64,10 +69,12 @@ std::map<std::string, std::vector<ObjectPart>> partsByObject(const rdf::QuadRead
 std::vector<Object> objectsOf(const rdf::QuadReader& reader, const rdf::OntologyView& ontology) {
   auto parts = partsByObject(reader, ontology);
   std::vector<Object> objects;
-  for (const Answer::Row row : answerOf(
-           reader,
-           "?o clx:confidence ?confidence ; clx:rule ?rule ; clx:heading ?heading . ?o" + std::string(kExtentPattern),
-           "?o")) {
+  for (const Answer::Row row : answerOf(reader,
+                                        "?o clx:confidence ?confidence ; clx:rule ?rule ; clx:heading ?heading . ?o" +
+                                            std::string(kExtentPattern) +
+                                            "OPTIONAL { ?o clx:firstSeen ?firstSeen ; clx:lastSeen ?lastSeen } "
+                                            "OPTIONAL { ?o clx:seenThrough ?seenThrough } ",
+                                        "?o")) {
     Object object;
     static_cast<Extent&>(object) = extentOf(row);
     object.number = objects.size();
@@ -77,6 +84,8 @@ std::vector<Object> objectsOf(const rdf::QuadReader& reader, const rdf::Ontology
     object.confidence = row.number("confidence");
     object.rule = row.text("rule");
     object.heading_rad = row.number("heading");
+    object.first_seen = timeOf(row, "firstSeen"), object.last_seen = timeOf(row, "lastSeen");
+    object.seen_through = timeOf(row, "seenThrough");
     if (const auto found = parts.find(object.iri); found != parts.end()) object.parts = std::move(found->second);
     objects.push_back(std::move(object));
   }

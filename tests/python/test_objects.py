@@ -25,6 +25,21 @@ def test_objects_are_those_of_a_query(campus_map):
     assert [thing.rule for thing in things] == answer["rule"]
 
 
+def test_objects_tell_when_they_were_there(campus, tmp_path):
+    run("simulate", tmp_path / "scans", "--seed", 5, "--stops", 2, "--size", 50, "--points-per-stop", 15000, "--visits", 2)
+    visited = campus.build(tmp_path / "visited.clx", tmp_path / "scans")
+    answer = visited.query(PREFIX + (
+        "SELECT ?o ?first ?last ?through { ?o clx:confidence ?c OPTIONAL { ?o clx:firstSeen ?first ; clx:lastSeen ?last } "
+        "OPTIONAL { ?o clx:seenThrough ?through } } ORDER BY ?o"))
+    things = visited.objects()
+    assert [thing.iri for thing in things] == answer.texts("o")
+    for column, attribute in (("first", "first_seen"), ("last", "last_seen"), ("through", "seen_through")):
+        assert [getattr(thing, attribute) for thing in things] == answer.texts(column)
+    gone = [thing for thing in things if thing.seen_through is not None]
+    assert 0 < len(gone) < len(things) and all(thing.last_seen < thing.seen_through for thing in gone)
+    assert all(thing.first_seen is None for thing in visited.objects("Ground"))
+
+
 def test_objects_are_chosen_by_class(campus_map):
     trees = campus_map.objects("Tree")
     assert len(trees) == campus_map.summary().objects_by_class["Tree"] > 0
