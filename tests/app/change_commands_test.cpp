@@ -89,6 +89,20 @@ TEST_F(ChangeCommands, ExtendGivesTheMapOfAllScans) {
   EXPECT_THAT(run("extend " + map + " " + in("campus")).out, HasSubstr("nothing changes; all scans are there"));
 }
 
+TEST_F(ChangeCommands, NameTheRulesThatTheyEvaluateForTheWholeMap) {
+  writeFile(path("count.rq"),
+            "PREFIX clx: <https://w3id.org/cluxel/ontology#> CONSTRUCT { <https://example.org/site> "
+            "<https://example.org/has> ?n } WHERE { { SELECT (COUNT(?thing) AS ?n) WHERE { ?thing a clx:Object } } }");
+  ASSERT_EQ(build(scan(0) + scan(1), "counted.clx", "--sparql-rules " + in("count.rq")), 0);
+  const Outcome extended = run("extend " + in("counted.clx") + " " + scan(2) + "--json");
+  ASSERT_EQ(extended.code, 0) << extended.err;
+  const Json expected{{{"rule", "count.rq"}, {"reason", "it aggregates over the map"}}};
+  EXPECT_EQ(Json::parse(extended.out).at("rules_evaluated_whole"), expected);
+  EXPECT_THAT(extended.err, HasSubstr("count.rq is evaluated for the whole map at each change"));
+  const Outcome without = run("extend " + copied("a.clx") + " " + scan(2) + "--json");
+  EXPECT_EQ(Json::parse(without.out).at("rules_evaluated_whole"), Json::array());
+}
+
 TEST_F(ChangeCommands, ExtendTellsOfOtherTimes) {
   const std::string map = copied("whole.clx"), later = moved("later", 0);
   const auto writeTimes = [&](int shift_s) {

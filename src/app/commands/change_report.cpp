@@ -70,6 +70,12 @@ Json statementsJson(const std::vector<mapping::StatementOutcome>& outcomes) {
   return json;
 }
 
+Json wholeRulesJson(const std::vector<mapping::WholeRule>& rules) {
+  Json json = Json::array();
+  for (const auto& [rule, reason] : rules) json.push_back({{"rule", rule}, {"reason", reason}});
+  return json;
+}
+
 }  // namespace
 
 Json changeJson(const fs::path& map, const ChangeReport& report, bool dry_run) {
@@ -89,6 +95,7 @@ Json changeJson(const fs::path& map, const ChangeReport& report, bool dry_run) {
               {"scans", report.scans},
               {"tiles", report.tiles},
               {"statements", statementsJson(report.statements)},
+              {"rules_evaluated_whole", wholeRulesJson(report.rules_evaluated_whole)},
               {"objects",
                {{"unchanged", report.objects.unchanged},
                 {"added", objectsJson(report.objects.added, after)},

@@ -236,6 +236,7 @@ SemanticUpdate MapEditor::decideInParts(rdf::WriteTransaction& transaction, std:
     difference.add(std::move(static_cast<DifferentObjects&>(update)));
     is_local = is_local && update.is_local;
     decided += update.tiles_decided;
+    addWholeRules(update.whole_rules, report_.rules_evaluated_whole, sink);
   }
   update.is_local = is_local, update.tiles_decided = decided;
   static_cast<DifferentObjects&>(update) = std::move(difference).take();
@@ -338,6 +339,7 @@ void MapEditor::report(const rdf::ReadTransaction& transaction, const SemanticUp
   report_.local_commits += update.is_local ? 1 : 0;
   report_.maps_taken_over += update.took_decisions ? 1 : 0;
   report_.tiles_decided += update.tiles_decided;
+  addWholeRules(update.whole_rules, report_.rules_evaluated_whole, sink_);
   if (!defers_things_) noteStatements();
 }
 

@@ -51,8 +51,10 @@ struct ChangeReport {
   std::vector<StatementOutcome> statements;  ///< what became of the operator's
   std::size_t local_commits = 0;             ///< of which objects and facts were computed around the change alone
   std::size_t maps_taken_over = 0;           ///< of a merge: maps of which objects and facts were taken
-  rdf::FreeSpace free_space;                 ///< of the map afterwards
-  rdf::ClassNames class_names;               ///< of the map's ontology afterwards
+  /// SPARQL rules that the change evaluated for the whole map: they cost as much as in a build.
+  std::vector<WholeRule> rules_evaluated_whole;
+  rdf::FreeSpace free_space;    ///< of the map afterwards
+  rdf::ClassNames class_names;  ///< of the map's ontology afterwards
 };
 
 /// Counts what the map has now.

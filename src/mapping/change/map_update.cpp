@@ -83,7 +83,7 @@ ChangeReport inferAfterUpdate(rdf::WriteTransaction& transaction, const std::set
   report.has_changes = true;
   report.class_names = namesOf(parsed.rules.catalogue);
   if (!parsed.rules.asks_map && !has_news) {
-    inferFacts(transaction, parsed.inputs, sink, check);
+    addWholeRules(inferFacts(transaction, parsed.inputs, sink, check), report.rules_evaluated_whole, sink);
     tellMap(report, transaction);
     report.statements = toldOutcomes(rdf::QuadReader(static_cast<const rdf::ReadTransaction&>(transaction)));
     return report;
@@ -95,6 +95,7 @@ ChangeReport inferAfterUpdate(rdf::WriteTransaction& transaction, const std::set
   SemanticUpdate layers =
       updateSemanticLayer(transaction, parsed, stages, ChangedInputs::Scans, params.layers, clock, check);
   if (const std::string note = summaryOf(layers.statements); !note.empty()) sink.note(note);
+  addWholeRules(layers.whole_rules, report.rules_evaluated_whole, sink);
   const Activity activity{params.operation, started_s, secondsNow(), clock.seconds()};
   addLineage(transaction, addActivity(transaction, activity, {}, parsed.inputs),
              compareStates(layers.before, layers.after));

@@ -120,9 +120,9 @@ ParsedInputs parseNewInputs(const MapInputs& inputs, const rdf::OntologyView& on
   return parsedWith(inputs, rules::catalogueOf(ontology), options);
 }
 
-void inferFacts(rdf::WriteTransaction& transaction, const MapInputs& inputs, ProgressSink& sink,
-                const rdf::InferenceCheck& check) {
-  inferAll(transaction, inputs.sparql_rules, sink, check);
+std::vector<WholeRule> inferFacts(rdf::WriteTransaction& transaction, const MapInputs& inputs, ProgressSink& sink,
+                                  const rdf::InferenceCheck& check) {
+  return inferAll(transaction, inputs.sparql_rules, sink, check);
 }
 
 SemanticLayer writeSemanticLayer(rdf::WriteTransaction& transaction, const ParsedInputs& parsed, TileStages& stages,
@@ -170,14 +170,14 @@ SemanticLayer writeSemanticLayer(rdf::WriteTransaction& transaction, const Parse
                                                        stated.outcomes, ways.get());
   storeToldWays(transaction, told_ways);
   storeWideTiles(transaction, wide);
-  inferFacts(transaction, parsed.inputs, sink, check);
+  std::vector<WholeRule> whole_rules = inferFacts(transaction, parsed.inputs, sink, check);
   storeLayers(transaction, {.scene = scene, .objects = result.objects}, blocks.get());
   storeOverruled(transaction, stated.overruled, scene);
   storeStatementTiles(transaction, stated.tiles);
   storeSplits(transaction, splits);
   storeMargins(transaction, margins.found(), parsed.rules);
   sink.progress("facts", 1, 1);
-  return {std::move(scene), std::move(result.objects), std::move(stated.outcomes)};
+  return {std::move(scene), std::move(result.objects), std::move(stated.outcomes), std::move(whole_rules)};
 }
 
 }  // namespace cluxel::mapping

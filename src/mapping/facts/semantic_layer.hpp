@@ -8,6 +8,7 @@
 #include "cluxel/progress.hpp"
 #include "mapping/build/tile_stages.hpp"
 #include "mapping/clouds/cloud.hpp"
+#include "mapping/inference/whole_rules.hpp"
 #include "mapping/map_inputs.hpp"
 #include "mapping/statements/applied_statements.hpp"
 #include "mapping/ways/ways.hpp"
@@ -42,14 +43,15 @@ void writeObjectsSoFar(rdf::WriteTransaction& transaction, const MapInputs& inpu
                        const perception::Scene& scene, const TileStages& stages, const WayGraph& ways,
                        std::span<const rules::SemanticObject> objects);
 
-/// Makes graph inferred hold the closure and what SPARQL rules derive. Notes axioms that are ignored.
-void inferFacts(rdf::WriteTransaction& transaction, const MapInputs& inputs, ProgressSink& sink,
-                const rdf::InferenceCheck& check = {});
+/// Makes graph inferred hold the closure and what SPARQL rules derive. Notes and gives what inferAll() does.
+std::vector<WholeRule> inferFacts(rdf::WriteTransaction& transaction, const MapInputs& inputs, ProgressSink& sink,
+                                  const rdf::InferenceCheck& check = {});
 
 struct SemanticLayer {
   perception::Scene scene;
   std::vector<rules::SemanticObject> objects;  ///< sorted by id
   std::vector<StatementOutcome> statements;    ///< what became of the operator's statements
+  std::vector<WholeRule> whole_rules;          ///< as inferAll() tells them
 };
 
 /// Computes objects and facts of the stages' outputs and stores them. The graphs ontology, observed and inferred are

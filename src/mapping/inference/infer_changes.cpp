@@ -45,11 +45,10 @@ Triple factOf(const ChangedQuad& changed) {
 class ChangeInference {
  public:
   ChangeInference(rdf::WriteTransaction& transaction, const InferenceGraphs& graphs, InferenceRecord& record,
-                  ProgressSink& sink, const rdf::InferenceCheck& check)
+                  const rdf::InferenceCheck& check)
       : transaction_(transaction),
         graphs_(graphs),
         record_(record),
-        sink_(sink),
         check_(check),
         reader_(static_cast<const rdf::ReadTransaction&>(transaction)),
         words_(reader_),
@@ -63,6 +62,7 @@ class ChangeInference {
   bool followRule(Stage stage, const RuleShape& shape, Outputs& outputs);
   void finish();
 
+  std::vector<WholeRule> takeWhole() { return std::move(whole_); }  ///< rules that were evaluated for the whole map
   std::vector<std::string> ignored() const { return ignoredAxioms(reader_, schema_); }
 
  private:
@@ -95,7 +95,6 @@ class ChangeInference {
   rdf::WriteTransaction& transaction_;
   const InferenceGraphs& graphs_;
   InferenceRecord& record_;
-  ProgressSink& sink_;
   const rdf::InferenceCheck& check_;
   rdf::QuadReader reader_;
   rdf::SchemaWords words_;
@@ -104,6 +103,7 @@ class ChangeInference {
   StagedFacts facts_;
   std::unordered_map<rdf::TermId, std::vector<SeenChange>> plain_;  ///< changes of properties that are only read
   rdf::StagedClosure closure_;
+  std::vector<WholeRule> whole_;
 };
 
 bool ChangeInference::followStated(const rdf::QuadDifference& change, const std::vector<RuleShape>& rules) {
@@ -246,7 +246,7 @@ bool ChangeInference::followRule(Stage stage, const RuleShape& shape, Outputs& o
       constexpr std::size_t kFewKeys = 1000;  // below, evaluating by key is never worse by much
       if (keys && keys->size() > kFewKeys && keys->size() > outputs.size() / 2) keys.reset();
     } else {
-      sink_.note(ruleFileName(shape.rule) + " is evaluated for the whole map at each change: " + shape.reason);
+      whole_.push_back({ruleFileName(shape.rule), shape.reason});
     }
     const std::optional<Outputs> now = solutions(stage, shape, reads, keys);
     touched = replaceOutputs(outputs, keys, *now);
@@ -305,33 +305,34 @@ bool isLarge(const rdf::WriteTransaction& transaction, const rdf::QuadDifference
 
 }  // namespace
 
-bool inferChanges(rdf::WriteTransaction& transaction, const std::vector<NamedText>& rules, ProgressSink& sink,
-                  const rdf::InferenceCheck& check) {
+std::optional<std::vector<WholeRule>> inferChanges(rdf::WriteTransaction& transaction,
+                                                   const std::vector<NamedText>& rules, ProgressSink& sink,
+                                                   const rdf::InferenceCheck& check) {
   const auto change = changesOf(transaction);
-  if (!change || isLarge(transaction, *change)) return false;
+  if (!change || isLarge(transaction, *change)) return std::nullopt;
   const InferenceGraphs graphs{rdf::QuadReader(static_cast<const rdf::ReadTransaction&>(transaction))};
   const rdf::EntrySum sum = sumBefore(sumWithout(transaction, graphs.history), *change, graphs.history);
   auto record = storedInferenceRecord(transaction, rules, sum);
-  if (!record) return false;
+  if (!record) return std::nullopt;
   if (!record->reason.empty()) {
     sink.note("everything is inferred anew at each change: " + record->reason);
-    return false;
+    return std::nullopt;
   }
   const auto is_inferred = [&](const rdf::QuadIds& quad) { return quad.g == graphs.inferred; };
   if (!graphs.are_all || std::any_of(change->added.begin(), change->added.end(), is_inferred) ||
       std::any_of(change->removed.begin(), change->removed.end(), is_inferred))
-    return false;
-  ChangeInference inference(transaction, graphs, *record, sink, check);
+    return std::nullopt;
+  ChangeInference inference(transaction, graphs, *record, check);
   std::vector<RuleShape> shapes;
   for (const NamedText& rule : rules) shapes.push_back(shapeOf(rule));
-  if (!inference.followStated(*change, shapes)) return false;
+  if (!inference.followStated(*change, shapes)) return std::nullopt;
   for (std::size_t i = 0; i < shapes.size(); ++i)
-    if (!inference.followRule(static_cast<Stage>(i + 1), shapes[i], record->outputs[i])) return false;
+    if (!inference.followRule(static_cast<Stage>(i + 1), shapes[i], record->outputs[i])) return std::nullopt;
   inference.finish();
   noteIgnoredAxioms(inference.ignored(), sink);
   storeInferenceRecord(transaction, *record, rules);
   restartJournal(transaction);
-  return true;
+  return inference.takeWhole();
 }
 
 }  // namespace cluxel::mapping

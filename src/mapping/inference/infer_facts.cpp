@@ -3,6 +3,7 @@
 #include "mapping/inference/infer_facts.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "base/free_memory.hpp"
 #include "mapping/inference/inference_graphs.hpp"
@@ -34,24 +35,26 @@ void noteSharedLabels(const rdf::OntologyView& ontology, ProgressSink& sink) {
   for (const Diagnostic& warning : sharedLabels(ontology)) sink.note(format(warning));
 }
 
-void inferAnew(rdf::WriteTransaction& transaction, const std::vector<NamedText>& rules, ProgressSink& sink,
-               const rdf::InferenceCheck& check) {
+std::vector<WholeRule> inferAnew(rdf::WriteTransaction& transaction, const std::vector<NamedText>& rules,
+                                 ProgressSink& sink, const rdf::InferenceCheck& check) {
   noteIgnoredAxioms(inferClosure(transaction, check).ignored, sink);
   returnFreeMemory();  // the closure of a large map takes hundreds of megabytes
   InferenceRecord record = runSparqlRules(transaction, rules, check);
   const rdf::QuadReader reader{static_cast<const rdf::ReadTransaction&>(transaction)};
   if (!InferenceGraphs(reader).are_all && record.reason.empty()) {
-    record = {};
-    record.outputs.resize(rules.size());
+    record.outputs.assign(rules.size(), {});
+    record.late.clear();
     record.reason = "the map has a graph that no part of Cluxel writes";
   }
   storeInferenceRecord(transaction, record, rules);
   restartJournal(transaction);
+  return std::move(record.whole);
 }
 
-void inferAll(rdf::WriteTransaction& transaction, const std::vector<NamedText>& rules, ProgressSink& sink,
-              const rdf::InferenceCheck& check) {
-  if (!inferChanges(transaction, rules, sink, check)) inferAnew(transaction, rules, sink, check);
+std::vector<WholeRule> inferAll(rdf::WriteTransaction& transaction, const std::vector<NamedText>& rules,
+                                ProgressSink& sink, const rdf::InferenceCheck& check) {
+  if (auto whole = inferChanges(transaction, rules, sink, check)) return *std::move(whole);
+  return inferAnew(transaction, rules, sink, check);
 }
 
 }  // namespace cluxel::mapping

@@ -2,9 +2,11 @@
 // Makes graph inferred follow from the other graphs: anew, or by what has changed in them.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "cluxel/progress.hpp"
+#include "mapping/inference/whole_rules.hpp"
 #include "mapping/map_inputs.hpp"
 #include "rdf/file/environment.hpp"
 #include "rdf/ontology/ontology.hpp"
@@ -13,18 +15,19 @@ namespace cluxel::mapping {
 
 /// Makes graph inferred hold the closure and what SPARQL rules derive. Follows the changes that the transaction has
 /// made when graph inferred is known to have been inferred from the state before them and the rules allow it; else
-/// infers everything anew. The outcome is the same. Notes axioms that are ignored, and rules that a change evaluates as
-/// a whole.
-void inferAll(rdf::WriteTransaction& transaction, const std::vector<NamedText>& rules, ProgressSink& sink,
-              const rdf::InferenceCheck& check = {});
+/// infers everything anew. The outcome is the same. Notes axioms that are ignored. Gives the rules that it evaluated
+/// for the whole map because of what they are; when everything is inferred anew, all that a change would evaluate so.
+std::vector<WholeRule> inferAll(rdf::WriteTransaction& transaction, const std::vector<NamedText>& rules,
+                                ProgressSink& sink, const rdf::InferenceCheck& check = {});
 
 /// The same without looking at changes.
-void inferAnew(rdf::WriteTransaction& transaction, const std::vector<NamedText>& rules, ProgressSink& sink,
-               const rdf::InferenceCheck& check = {});
+std::vector<WholeRule> inferAnew(rdf::WriteTransaction& transaction, const std::vector<NamedText>& rules,
+                                 ProgressSink& sink, const rdf::InferenceCheck& check = {});
 
-/// Follows the changes. False when that is not possible: then graph inferred may be in any state.
-bool inferChanges(rdf::WriteTransaction& transaction, const std::vector<NamedText>& rules, ProgressSink& sink,
-                  const rdf::InferenceCheck& check = {});
+/// Follows the changes. Absent when that is not possible: then graph inferred may be in any state.
+std::optional<std::vector<WholeRule>> inferChanges(rdf::WriteTransaction& transaction,
+                                                   const std::vector<NamedText>& rules, ProgressSink& sink,
+                                                   const rdf::InferenceCheck& check = {});
 
 /// Notes the axioms of an ontology from which nothing is inferred, and what to write instead.
 void noteUnusedAxioms(const std::vector<NamedText>& ontology, ProgressSink& sink);

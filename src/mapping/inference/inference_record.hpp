@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "mapping/inference/rule_evaluation.hpp"
+#include "mapping/inference/whole_rules.hpp"
 #include "rdf/store/quad_journal.hpp"
 
 namespace cluxel::mapping {
@@ -15,6 +16,7 @@ struct InferenceRecord {
   std::vector<std::vector<RuleOutput>> outputs;  ///< of each rule, sorted
   std::vector<rdf::LateFact> late;               ///< sorted
   std::string reason;  ///< why a change cannot be followed: a rule and what is wrong with it; empty when it can
+  std::vector<WholeRule> whole;  ///< of this inference; it is not stored
 };
 
 /// Stores the record with a sum of all quads outside of the history as they are now.

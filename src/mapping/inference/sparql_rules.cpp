@@ -92,6 +92,7 @@ class RuleRun {
       doNotFollow(shape, shape.following == RuleShape::Following::Never ? shape.reason : "it reads what it derives");
     }
     if (shape.following == RuleShape::Following::Never) doNotFollow(shape, shape.reason);
+    if (shape.following == RuleShape::Following::AsWhole) addWhole(shape, shape.reason);
   }
 
   InferenceRecord finish() {
@@ -103,6 +104,12 @@ class RuleRun {
  private:
   void doNotFollow(const RuleShape& shape, const std::string& reason) {
     if (record_.reason.empty()) record_.reason = ruleFileName(shape.rule) + ": " + reason;
+    addWhole(shape, reason);
+  }
+
+  void addWhole(const RuleShape& shape, const std::string& reason) {
+    const std::string name = ruleFileName(shape.rule);
+    if (record_.whole.empty() || record_.whole.back().rule != name) record_.whole.push_back({name, reason});
   }
 
   /// Whether the rule may find more after these quads. One whose patterns cannot be told may.

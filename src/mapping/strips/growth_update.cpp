@@ -92,7 +92,7 @@ class GrowthUpdate {
     tellRays();
     transaction_.writePages();
     returnFreeMemory();
-    inferFacts(transaction_, work_.parsed.inputs, work_.sink, work_.check);
+    update.whole_rules = inferFacts(transaction_, work_.parsed.inputs, work_.sink, work_.check);
     const rdf::ReadTransaction& reading = transaction_;
     update.statements = toldOutcomes(rdf::QuadReader(reading));
     update.is_local = true;

@@ -80,7 +80,7 @@ class StripUpdate {
     eraseRowsWithoutObject(transaction_);
     transaction_.writePages();
     returnFreeMemory();
-    inferFacts(transaction_, work_.parsed.inputs, work_.sink, work_.check);
+    update.whole_rules = inferFacts(transaction_, work_.parsed.inputs, work_.sink, work_.check);
     storeSplits(transaction_, splits);
     update.statements = toldOutcomes(rdf::QuadReader(reading()));
     return update;
@@ -190,7 +190,7 @@ SemanticUpdate updateAtOnce(const LayerWork& work) {
   if (work.params.lists_objects) update.after = membersOf(layer.objects, layer.scene.cluxels);
   update.objects = layer.objects.size();
   update.cluxels = layer.scene.cluxels.size(), update.primitives = layer.scene.primitives.size();
-  update.statements = std::move(layer.statements);
+  update.statements = std::move(layer.statements), update.whole_rules = std::move(layer.whole_rules);
   storeSemanticState(work.transaction, {update.cluxels, update.primitives, update.objects,
                                         statementIds(work.transaction), seenClouds(storedClouds(work.transaction))});
   return update;
@@ -224,9 +224,9 @@ std::optional<SemanticUpdate> updateInference(const LayerWork& work, const Outpu
       !areSame(state->clouds, seenClouds(storedClouds(work.transaction))))
     return std::nullopt;
   writeOntology(work.transaction, work.parsed.inputs);
-  inferFacts(work.transaction, work.parsed.inputs, work.sink, work.check);
-  keepToldWays(work.transaction);
   SemanticUpdate update;
+  update.whole_rules = inferFacts(work.transaction, work.parsed.inputs, work.sink, work.check);
+  keepToldWays(work.transaction);
   update.is_local = true;
   update.objects = state->objects, update.cluxels = state->cluxels, update.primitives = state->primitives;
   if (!state->statements.empty()) {

@@ -272,7 +272,7 @@ class LocalUpdate {
       update.statements = toldOutcomes(rdf::QuadReader(static_cast<const rdf::ReadTransaction&>(transaction_)));
     updatePassedObjects(transaction_, parsed_, stages_, clouds_, passed_, window, params_.threads);
     if (check_) check_(0);
-    if (strip_ == nullptr) inferFacts(transaction_, parsed_.inputs, sink_, check_);
+    if (strip_ == nullptr) update.whole_rules = inferFacts(transaction_, parsed_.inputs, sink_, check_);
     now_.objects = update.objects, now_.cluxels = update.cluxels, now_.primitives = update.primitives;
     storeSemanticState(transaction_, now_);
     keepToldWays(transaction_);

@@ -71,7 +71,8 @@ SemanticUpdate updateSemanticLayer(rdf::WriteTransaction& transaction, const Par
     if (auto update = updateAround(work, changes, inputs, lent ? &*lent : nullptr, nullptr)) {
       const bool may_infer_otherwise =
           infers_otherwise || (inputs == ChangedInputs::Rules && hasOtherQuads(transaction));
-      if (may_infer_otherwise && update->tiles_decided == 0) inferFacts(transaction, parsed.inputs, sink, check);
+      if (may_infer_otherwise && update->tiles_decided == 0)
+        update->whole_rules = inferFacts(transaction, parsed.inputs, sink, check);
       update->took_decisions = lent.has_value();
       if (changes.has_copied_map) eraseRowsWithoutObject(transaction);
       return *std::move(update);

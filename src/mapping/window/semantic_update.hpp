@@ -21,6 +21,7 @@ struct SemanticUpdate : DifferentObjects {
   std::size_t tiles_decided = 0;                           ///< in which the rules ran: a window, or all
   std::uint64_t objects = 0, cluxels = 0, primitives = 0;  ///< of the map afterwards
   std::vector<StatementOutcome> statements;
+  std::vector<WholeRule> whole_rules;  ///< SPARQL rules that were evaluated for the whole map, as inferAll() tells them
 };
 
 /// For writeThings(): whether an object that the update does not list exists before and after.
