@@ -112,14 +112,19 @@ struct CellThing {
 /// Points at the height of the ground.
 class LowPoints {
  public:
-  explicit LowPoints(const TerrainGrid& grid) : frame_(grid.frame), surface_(grid.height) {}
+  explicit LowPoints(const TerrainGrid& grid)
+      : frame_(grid.frame), surface_(grid.height), had_thing_(grid.height.size(), 0) {}
 
   void add(std::uint32_t cell, const Eigen::Vector3d& p_map) {
     points_.push_back({cell, (p_map - Eigen::Vector3d(frame_.min_x, frame_.min_y, 0)).cast<float>()});
   }
 
+  /// Something stood in the cell that does not count. Its lowest points may be among those of the ground.
+  void addLeftOut(std::uint32_t cell) { had_thing_[cell] = 1; }
+
   /// Gives each cell the median height of its points, so that a cell at a kerb has the height of the side of which it
-  /// holds more. Where a cell has few points, those within half a metre count, moved along the slope of the surface.
+  /// holds more; where something stood that is left out, the height that a quarter of the points do not exceed. Where a
+  /// cell has few points, those within half a metre count, moved along the slope of the surface.
   void refine(TerrainGrid& grid) {
     std::stable_sort(points_.begin(), points_.end(), [](const auto& a, const auto& b) { return a.cell < b.cell; });
     first_.assign(frame_.size() + 1, 0);
@@ -134,7 +139,8 @@ class LowPoints {
       const Eigen::Vector2f slope(slopeOf(cell, 1, 0), slopeOf(cell, 0, 1));
       for (int ring = 0; ring <= reach && heights.size() < enough; ++ring) heightsWithin(cell, ring, slope, heights);
       if (heights.size() < enough) continue;
-      const auto middle = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 2);
+      const auto middle =
+          heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / (had_thing_[cell] != 0 ? 4 : 2));
       std::nth_element(heights.begin(), middle, heights.end());
       grid.height[cell] = *middle;
     }
@@ -178,7 +184,8 @@ class LowPoints {
   }
 
   const GridFrame& frame_;
-  std::vector<float> surface_;  ///< NaN outside of tiles
+  std::vector<float> surface_;           ///< NaN outside of tiles
+  std::vector<std::uint8_t> had_thing_;  ///< 1: addLeftOut()
   std::vector<LowPoint> points_;
   std::vector<std::uint32_t> first_;  ///< of each cell's points
 };
@@ -203,6 +210,7 @@ std::vector<CellThing> thingsOf(const mapping::MapReader& map, const TerrainPara
       const std::uint32_t object = object_of[first + tile.point_cluxel[i]];
       const bool is_ground = object != mapping::kNoObject && is_surface[object];
       const bool counts = object == mapping::kNoObject || is_ground || is_left_out.empty() || !is_left_out[object];
+      if (!counts && above <= params.highest_m) low.addLeftOut(*cell);
       if (std::abs(above) < params.lowest_m) {
         if (counts) low.add(*cell, corner + Eigen::Vector3d(points.x[i], points.y[i], points.z[i] - corner.z()));
       } else if (!is_ground && above > 0 && above <= params.highest_m) {
