@@ -5,14 +5,13 @@
 
 #include <fcntl.h>
 #include <sys/mman.h>
-#include <unistd.h>
 
 #include <cerrno>
-#include <cstdlib>
 #include <new>
 #include <string>
 #include <system_error>
 
+#include "base/sorting/nameless_file.hpp"
 #include "rdf/file/lmdb_handles.hpp"
 
 namespace cluxel::rdf {
@@ -23,17 +22,6 @@ namespace {
 
 constexpr std::size_t kChunkBytes = std::size_t{4} << 20U, kPagesOfChunk = kChunkBytes / DraftPages::kPageBytes;
 constexpr std::size_t kChunksInMemory = 4;
-
-/// A file without a name. Where the file system has no such files, the name is removed at once. -1 when no file can be
-/// made.
-int openNameless(const fs::path& folder) {
-  const int descriptor = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
-  if (descriptor >= 0) return descriptor;
-  std::string name = folder / ".cluxel-index-XXXXXX";
-  const int named = ::mkostemp(name.data(), O_CLOEXEC);
-  if (named >= 0) ::unlink(name.c_str());
-  return named;
-}
 
 void* anonymousMap() {
   return ::mmap(nullptr, kChunkBytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
@@ -69,12 +57,11 @@ std::size_t DraftPages::bytes() const {
 
 /// The folder of a map may be closed to those who may write the map, and that of a temporary map is gone.
 void DraftPages::openFile() {
-  const LowDescriptors low;
-  file_ = Descriptor(openNameless(folder_));
+  file_ = Descriptor(openNamelessFile(folder_));
   if (file_.get() >= 0) return;
   std::error_code ignored;
   folder_ = fs::temp_directory_path(ignored);
-  file_ = Descriptor(openNameless(folder_));
+  file_ = Descriptor(openNamelessFile(folder_));
 }
 
 void* DraftPages::mapOfFile() {

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// Sorts byte strings that need not fit into memory.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace cluxel {
+
+/// Byte strings, given back in bytewise order, each once. What exceeds a limit of memory goes as sorted runs to a file
+/// without a name in the folder for temporary files, and the runs are merged. Beyond the limit memory grows by some
+/// bytes a run only.
+class SortedRecords {
+ public:
+  static constexpr std::size_t kUsualBytes = std::size_t{64} << 20U;
+
+  explicit SortedRecords(std::size_t bytes_in_memory = kUsualBytes) : limit_(bytes_in_memory) {}
+  SortedRecords(const SortedRecords&) = delete;
+  SortedRecords& operator=(const SortedRecords&) = delete;
+  ~SortedRecords();
+
+  /// Throws Error (StoreUnavailable) when the folder for temporary files cannot be used or is full.
+  void add(std::string_view record);
+  /// Calls `take` for all records and forgets them. The view is valid during the call. Throws as add(), or what `take`
+  /// throws.
+  void drain(const std::function<void(std::string_view)>& take);
+
+ private:
+  struct Place {
+    std::size_t begin = 0;
+    std::uint32_t size = 0;
+  };
+  struct Run {
+    std::uint64_t begin = 0, end = 0;  ///< in the file
+  };
+  class RunReader;
+
+  std::string_view viewOf(const Place& place) const { return {bytes_.data() + place.begin, place.size}; }
+  void sortMemory();
+  void writeRun();
+  void writeAll(std::string_view bytes);
+  void mergeRuns(const std::function<void(std::string_view)>& take);
+  void forget();
+
+  std::size_t limit_;
+  std::string bytes_;
+  std::vector<Place> places_;
+  std::vector<Run> runs_;
+  std::uint64_t file_bytes_ = 0;
+  int file_ = -1;
+};
+
+}  // namespace cluxel
