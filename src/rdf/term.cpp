@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "base/ascii.hpp"
+#include "rdf/io/term_text.hpp"
 #include "rdf/iri.hpp"
 #include "rdf/vocabulary.hpp"
 
@@ -53,31 +54,6 @@ void appendEscapedIri(std::string& out, std::string_view iri) {
   }
 }
 
-void appendTerm(std::string& out, const Term& term) {
-  switch (term.kind) {
-    case TermKind::Iri:
-      out += '<';
-      appendEscapedIri(out, term.text);
-      out += '>';
-      return;
-    case TermKind::BlankNode:
-      out.append("_:").append(term.text);
-      return;
-    case TermKind::Literal:
-      break;
-  }
-  out += '"';
-  appendEscapedLiteral(out, term.text);
-  out += '"';
-  if (!term.language.empty()) {
-    out.append("@").append(term.language);
-  } else if (term.datatype != rdf::vocabulary::xsd("string")) {
-    out += "^^<";
-    appendEscapedIri(out, term.datatype);
-    out += '>';
-  }
-}
-
 /// XSD canonical form: at least one fraction digit, and an exponent without plus sign and leading zeros (1.5E-7).
 std::string canonicalDouble(double value) {
   if (std::isnan(value)) return "NaN";
@@ -96,6 +72,36 @@ std::string canonicalDouble(double value) {
 }
 
 }  // namespace
+
+namespace rdf {
+
+void appendNTriples(std::string& out, const TermView& term) {
+  static const std::string plain = vocabulary::xsd("string");
+  switch (term.kind) {
+    case TermKind::Iri:
+      out += '<';
+      appendEscapedIri(out, term.text);
+      out += '>';
+      return;
+    case TermKind::BlankNode:
+      out.append("_:").append(term.text);
+      return;
+    case TermKind::Literal:
+      break;
+  }
+  out += '"';
+  appendEscapedLiteral(out, term.text);
+  out += '"';
+  if (!term.language.empty()) {
+    out.append("@").append(term.language);
+  } else if (term.datatype != plain) {
+    out += "^^<";
+    appendEscapedIri(out, term.datatype);
+    out += '>';
+  }
+}
+
+}  // namespace rdf
 
 Term Term::literal(std::string_view lexical) {
   return {TermKind::Literal, std::string(lexical), rdf::vocabulary::xsd("string"), {}};
@@ -123,19 +129,19 @@ Term Term::boolean(bool value) {
 
 std::string toNTriples(const Term& term) {
   std::string out;
-  appendTerm(out, term);
+  rdf::appendNTriples(out, rdf::TermView::of(term));
   return out;
 }
 
 std::string toNQuads(const Quad& quad) {
   std::string out;
   for (const Term* term : {&quad.subject, &quad.predicate, &quad.object}) {
-    appendTerm(out, *term);
+    rdf::appendNTriples(out, rdf::TermView::of(*term));
     out += ' ';
   }
   const bool default_graph = quad.graph.kind == TermKind::Iri && quad.graph.text.empty();
   if (!default_graph) {
-    appendTerm(out, quad.graph);
+    rdf::appendNTriples(out, rdf::TermView::of(quad.graph));
     out += ' ';
   }
   return out += ".\n";

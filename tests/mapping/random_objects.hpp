@@ -68,8 +68,7 @@ class RandomObjects {
 
 inline std::string historyOf(const rdf::ReadTransaction& transaction) {
   std::string text;
-  writeSortedNQuads(
-      QuadReader(transaction), [&](std::string_view piece) { text.append(piece); }, [](const Quad&) { return true; });
+  writeSortedNQuads(QuadReader(transaction), [&](std::string_view piece) { text.append(piece); });
   return text;
 }
 

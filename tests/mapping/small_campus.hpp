@@ -64,7 +64,7 @@ inline std::string canonicalText(const MapReader& map) {
   std::string text;
   writeCanonicalNQuads(
       map.quads(), [&](std::string_view piece) { text.append(piece); },
-      [](const Quad& quad) { return quad.graph.text != vocabulary::kGraphHistory; });
+      [](const Term& graph) { return graph.text != vocabulary::kGraphHistory; });
   return text;
 }
 

@@ -162,7 +162,7 @@ TEST(CampusMapPage, HoldsTheQuadsOfAllGraphsButHistory) {
   std::vector<std::string> expected;
   writeSortedNQuads(
       CampusMap::shared().map().quads(), [&](std::string_view line) { expected.emplace_back(line); },
-      [](const Quad& quad) { return quad.graph.text != vocabulary::kGraphHistory; });
+      [](const Term& graph) { return graph.text != vocabulary::kGraphHistory; });
   EXPECT_EQ(lines, expected);
 }
 

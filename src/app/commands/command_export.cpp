@@ -3,6 +3,7 @@
 #include "app/command.hpp"
 #include "app/map_condition.hpp"
 #include "app/shared_options.hpp"
+#include "base/file_pieces.hpp"
 #include "cluxel/error.hpp"
 #include "tasks/export/map_export.hpp"
 
@@ -26,6 +27,22 @@ tasks::ExportFormat formatOf(const ExportOptions& options) {
                                               "geojson, or an output file that ends in .ttl, .nq, .ply or .geojson");
 }
 
+void exportTo(const ExportOptions& options, tasks::ExportFormat format, Session& session, const tasks::ByteSink& out) {
+  bool is_exact = true;
+  if (const auto store = storeWithoutScans(options.map); store && isRdf(format)) {
+    is_exact = exportQuads(*store, format, out);
+  } else {
+    const mapping::MapReader map(options.map);
+    noteUnfinished(options.map, map.isFinished(), options.allow_unfinished, session);
+    is_exact =
+        exportMap(map, format, out, options.local ? tasks::ExportFrame::Local : tasks::ExportFrame::LongitudeLatitude);
+  }
+  if (!is_exact)
+    session.console.note(options.map.string() +
+                         ": its blank nodes are too much alike for canonical labels and keep those of the store, so "
+                         "that an equal map may have other bytes");
+}
+
 }  // namespace
 
 void addExport(CLI::App& app, Session& session) {
@@ -42,28 +59,11 @@ void addExport(CLI::App& app, Session& session) {
   onRun(*command, session, [options, &session] {
     const tasks::ExportFormat format = formatOf(*options);
     refuseToReplaceMap(options->output);
-    std::string bytes;
-    const bool to_stdout = options->output.empty();
-    const auto write = [&](std::string_view piece) {
-      if (to_stdout)
-        std::fwrite(piece.data(), 1, piece.size(), stdout);
-      else
-        bytes.append(piece);
-    };
-    bool is_exact = true;
-    if (const auto store = storeWithoutScans(options->map); store && isRdf(format)) {
-      is_exact = exportQuads(*store, format, write);
-    } else {
-      const mapping::MapReader map(options->map);
-      noteUnfinished(options->map, map.isFinished(), options->allow_unfinished, session);
-      is_exact = exportMap(map, format, write,
-                           options->local ? tasks::ExportFrame::Local : tasks::ExportFrame::LongitudeLatitude);
-    }
-    if (!is_exact)
-      session.console.note(options->map.string() +
-                           ": its blank nodes are too much alike for canonical labels and keep those of the store, so "
-                           "that an equal map may have other bytes");
-    if (!to_stdout) writeOutput(options->output, bytes);
+    if (options->output.empty())
+      exportTo(*options, format, session,
+               [](std::string_view piece) { std::fwrite(piece.data(), 1, piece.size(), stdout); });
+    else
+      writeFileInPieces(options->output, [&](const auto& take) { exportTo(*options, format, session, take); });
     return ExitCode::Done;
   });
 }

@@ -2,6 +2,7 @@
 // Reads and writes RDF: Turtle, N-Triples, N-Quads, TriG and RDF/XML.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -12,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/sorting/sorted_records.hpp"
 #include "cluxel/error.hpp"
 #include "cluxel/term.hpp"
 #include "rdf/store/quad_store.hpp"
@@ -68,19 +70,22 @@ using RdfPrefixes = std::map<std::string, std::string, std::less<>>;
 /// clx, rdf, rdfs, owl, xsd, geo, sosa, prov, skos.
 const RdfPrefixes& commonPrefixes();
 
-/// Canonical N-Quads without duplicates, sorted bytewise: of all graphs or of the given one, restricted to the quads
-/// that `keep` accepts.
-void writeSortedNQuads(const QuadReader& reader, const TextSink& out,
-                       const std::function<bool(const Quad&)>& keep = {});
+/// Says which graphs are written; absent: all.
+using GraphFilter = std::function<bool(const Term& graph)>;
+/// Canonical N-Quads without duplicates, sorted bytewise. What takes more than `sort_bytes` to sort goes to a temporary
+/// file (SortedRecords, which tells the errors), so that memory does not grow with the store.
+void writeSortedNQuads(const QuadReader& reader, const TextSink& out, const GraphFilter& keep = {},
+                       std::size_t sort_bytes = SortedRecords::kUsualBytes);
 /// The same with the canonical labels of blank nodes (canonicalLabels()): what is written follows from the dataset
-/// alone. False when the blank nodes were too much alike for that, and kept the labels that the store has.
-bool writeCanonicalNQuads(const QuadReader& reader, const TextSink& out,
-                          const std::function<bool(const Quad&)>& keep = {});
+/// alone. False when the blank nodes were too much alike for that, and kept the labels that the store has. Quads with
+/// blank nodes are held in memory.
+bool writeCanonicalNQuads(const QuadReader& reader, const TextSink& out, const GraphFilter& keep = {},
+                          std::size_t sort_bytes = SortedRecords::kUsualBytes);
 /// N-Quads of all graphs, or the triples of one as N-Triples, in the order of the store. Memory does not grow with it.
 void writeStoredNQuads(const QuadReader& reader, const std::optional<Term>& graph, const TextSink& out);
 /// Turtle of one graph, or of the union of all graphs but history when `graph` is absent. Subjects are sorted by term,
-/// rdf:type comes first, duplicates are removed, and lexical forms are preserved.
+/// rdf:type comes first, duplicates are removed, and lexical forms are preserved. Sorted as writeSortedNQuads() does.
 void writeTurtle(const QuadReader& reader, const std::optional<Term>& graph, const TextSink& out,
-                 const RdfPrefixes& prefixes = commonPrefixes());
+                 const RdfPrefixes& prefixes = commonPrefixes(), std::size_t sort_bytes = SortedRecords::kUsualBytes);
 
 }  // namespace cluxel::rdf

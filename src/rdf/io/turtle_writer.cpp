@@ -4,9 +4,11 @@
 #include "rdf/io/turtle_writer.hpp"
 
 #include <algorithm>
-#include <vector>
+#include <cstring>
 
 #include "base/ascii.hpp"
+#include "base/sorting/sorted_records.hpp"
+#include "rdf/io/sorted_subjects.hpp"
 #include "rdf/vocabulary.hpp"
 
 namespace cluxel::rdf {
@@ -34,43 +36,79 @@ bool isBare(const Term& term) {
   return point != std::string_view::npos && all_digits(digits.substr(0, point)) && all_digits(digits.substr(point + 1));
 }
 
-struct WrittenTriple {
-  Term subject, predicate, object;
-  auto operator<=>(const WrittenTriple&) const = default;
+bool isType(std::string_view predicate) {
+  static const std::string type = vocabulary::rdf("type");
+  return predicate == type;
+}
+
+/// Appends a text so that bytewise order is that of the texts, whatever follows: an end that no byte comes before.
+void appendOrdered(std::string& key, std::string_view text) {
+  constexpr char kEnd = 0, kZeroOfText = 1;
+  for (const char c : text) {
+    key += c;
+    if (c == kEnd) key += kZeroOfText;
+  }
+  key.append(2, kEnd);
+}
+
+/// Appends what orders as the term does.
+void appendOrdered(std::string& key, const TermView& term) {
+  key += static_cast<char>(term.kind);
+  for (const std::string_view text : {term.text, term.datatype, term.language}) appendOrdered(key, text);
+}
+
+/// A predicate and an object behind the key that orders them: rdf:type first, then by term.
+struct PredicateObject {
+  TermId predicate = kNoTerm, object = kNoTerm;
 };
 
-bool isType(const Term& predicate) {
-  return predicate.text == vocabulary::rdf("type");
+std::string keyOf(const QuadReader& reader, const PredicateObject& pair) {
+  const TermView predicate = reader.viewOf(pair.predicate);
+  std::string key(1, isType(predicate.text) ? '0' : '1');
+  appendOrdered(key, predicate);
+  appendOrdered(key, reader.viewOf(pair.object));
+  return key.append(reinterpret_cast<const char*>(&pair), sizeof pair);
 }
 
-/// Orders by subject, then rdf:type first, then by term.
-bool comesBefore(const WrittenTriple& a, const WrittenTriple& b) {
-  if (a.subject != b.subject) return a.subject < b.subject;
-  if (a.predicate != b.predicate) {
-    if (isType(a.predicate) != isType(b.predicate)) return isType(a.predicate);
-    return a.predicate < b.predicate;
-  }
-  return a.object < b.object;
+PredicateObject pairOf(std::string_view key) {
+  PredicateObject pair;
+  std::memcpy(&pair, key.data() + key.size() - sizeof pair, sizeof pair);
+  return pair;
 }
 
-std::vector<WrittenTriple> triplesOf(const QuadReader& reader, const std::optional<Term>& graph) {
-  std::vector<WrittenTriple> triples;
-  QuadPattern pattern;
-  std::optional<TermId> history;
-  if (graph) {
-    pattern.g = reader.idOf(*graph);
-    if (!pattern.g) return triples;
-  } else {
-    history = reader.idOf(Term::iri(vocabulary::kGraphHistory));
+/// Writes one subject after the other.
+class TurtleSubjects {
+ public:
+  TurtleSubjects(const QuadReader& reader, const TextSink& out, const RdfPrefixes& prefixes)
+      : reader_(reader), out_(out), terms_(prefixes) {}
+
+  void writeHeader() { out_(terms_.header()); }
+  void writePair(TermId subject, const PredicateObject& pair) {
+    const bool is_new = subject != subject_;
+    text_.clear();
+    if (is_new) text_ = (subject_ != kNoTerm ? " .\n\n" : "\n") + textOf(subject) + ' ';
+    if (!is_new) text_ = pair.predicate == predicate_ ? ", " : " ;\n    ";
+    if (is_new || pair.predicate != predicate_) {
+      const Term predicate = reader_.termOf(pair.predicate);
+      (text_ += isType(predicate.text) ? "a" : terms_.text(predicate)) += ' ';
+    }
+    subject_ = subject;
+    predicate_ = pair.predicate;
+    out_(text_ += textOf(pair.object));
   }
-  QuadCursor cursor = reader.scan(pattern);
-  for (QuadIds quad; cursor.next(quad);)
-    if (!history || quad.g != *history)
-      triples.push_back({reader.termOf(quad.s), reader.termOf(quad.p), reader.termOf(quad.o)});
-  std::sort(triples.begin(), triples.end(), comesBefore);
-  triples.erase(std::unique(triples.begin(), triples.end()), triples.end());
-  return triples;
-}
+  void writeEnd() {
+    if (subject_ != kNoTerm) out_(" .\n");
+  }
+
+ private:
+  std::string textOf(TermId id) const { return terms_.text(reader_.termOf(id)); }
+
+  const QuadReader& reader_;
+  const TextSink& out_;
+  TurtleTerms terms_;
+  TermId subject_ = kNoTerm, predicate_ = kNoTerm;  ///< of the last triple
+  std::string text_;
+};
 
 }  // namespace
 
@@ -98,20 +136,23 @@ std::string TurtleTerms::header() const {
 }
 
 void writeTurtle(const QuadReader& reader, const std::optional<Term>& graph, const TextSink& out,
-                 const RdfPrefixes& prefixes) {
-  const TurtleTerms terms(prefixes);
-  out(terms.header());
-  const std::vector<WrittenTriple> triples = triplesOf(reader, graph);
-  for (std::size_t i = 0; i < triples.size(); ++i) {
-    const bool same_subject = i > 0 && triples[i].subject == triples[i - 1].subject;
-    const bool same_predicate = same_subject && triples[i].predicate == triples[i - 1].predicate;
-    std::string text;
-    if (!same_subject) text = (i > 0 ? " .\n\n" : "\n") + terms.text(triples[i].subject) + ' ';
-    if (same_subject) text = same_predicate ? ", " : " ;\n    ";
-    if (!same_predicate) text += (isType(triples[i].predicate) ? "a" : terms.text(triples[i].predicate)) + ' ';
-    out(text + terms.text(triples[i].object));
-  }
-  if (!triples.empty()) out(" .\n");
+                 const RdfPrefixes& prefixes, std::size_t sort_bytes) {
+  TurtleSubjects writer(reader, out, prefixes);
+  writer.writeHeader();
+  const std::optional<TermId> one_graph = graph ? reader.idOf(*graph) : std::nullopt;
+  if (graph && !one_graph) return;
+  const std::optional<TermId> history = graph ? std::nullopt : reader.idOf(Term::iri(vocabulary::kGraphHistory));
+  SortedSubjects subjects(reader, one_graph);
+  SortedRecords pairs(sort_bytes);
+  const auto append_key = [&](std::string& key, TermId subject) { appendOrdered(key, reader.viewOf(subject)); };
+  const auto write_subject = [&](std::string_view, TermId subject) {
+    subjects.forEachQuadOf(subject, [&](const QuadIds& quad) {
+      if (quad.g != history) pairs.add(keyOf(reader, {quad.p, quad.o}));
+    });
+    pairs.drain([&](std::string_view key) { writer.writePair(subject, pairOf(key)); });
+  };
+  subjects.forEach(append_key, write_subject, sort_bytes);
+  writer.writeEnd();
 }
 
 }  // namespace cluxel::rdf

@@ -27,7 +27,7 @@ bool isRdf(ExportFormat format) {
 bool exportQuads(const rdf::QuadReader& quads, ExportFormat format, const ByteSink& out) {
   if (format == ExportFormat::Canonical)
     return writeCanonicalNQuads(quads, out,
-                                [](const Quad& quad) { return quad.graph.text != rdf::vocabulary::kGraphHistory; });
+                                [](const Term& graph) { return graph.text != rdf::vocabulary::kGraphHistory; });
   if (format == ExportFormat::Turtle)
     writeTurtle(quads, std::nullopt, out);
   else
