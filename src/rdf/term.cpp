@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "base/ascii.hpp"
-#include "rdf/io/term_text.hpp"
+#include "rdf/io/ntriples_text.hpp"
 #include "rdf/iri.hpp"
 #include "rdf/vocabulary.hpp"
 

@@ -74,21 +74,21 @@ std::string sortedLines(std::vector<Quad> quads, const std::map<std::string, std
   return text;
 }
 
-struct Triple {
+struct WrittenOnce {
   Term subject;
   bool is_no_type = false;
   Term predicate, object;
-  auto operator<=>(const Triple&) const = default;
+  auto operator<=>(const WrittenOnce&) const = default;
 };
 
 std::string turtleOf(const std::vector<Quad>& quads) {
-  std::set<Triple> triples;
+  std::set<WrittenOnce> triples;
   for (const Quad& quad : quads)
     triples.insert({quad.subject, quad.predicate.text != vocabulary::rdf("type"), quad.predicate, quad.object});
   const TurtleTerms terms(commonPrefixes());
   std::string text = terms.header();
-  const Triple* last = nullptr;
-  for (const Triple& triple : triples) {
+  const WrittenOnce* last = nullptr;
+  for (const WrittenOnce& triple : triples) {
     const bool same_subject = last != nullptr && triple.subject == last->subject;
     const bool same_predicate = same_subject && triple.predicate == last->predicate;
     if (!same_subject) text += (last != nullptr ? " .\n\n" : "\n") + terms.text(triple.subject) + ' ';

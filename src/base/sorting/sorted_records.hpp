@@ -13,8 +13,8 @@
 namespace cluxel {
 
 /// Byte strings, given back in bytewise order, each once. What exceeds a limit of memory goes as sorted runs to a file
-/// without a name in the folder for temporary files, and the runs are merged. Beyond the limit memory grows by some
-/// bytes a run only.
+/// without a name in the folder for temporary files, and the runs are merged. Memory is at most some two and a half
+/// times the limit, and 4 KiB a run.
 class SortedRecords {
  public:
   static constexpr std::size_t kUsualBytes = std::size_t{64} << 20U;

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "rdf/io/canonical_labels.hpp"
+#include "rdf/io/ntriples_text.hpp"
 #include "rdf/io/rdf_io.hpp"
 #include "rdf/io/sorted_subjects.hpp"
-#include "rdf/io/term_text.hpp"
 
 namespace cluxel::rdf {
 
