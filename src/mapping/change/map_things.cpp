@@ -96,9 +96,12 @@ class Naming {
       for (const std::string& thing : things) (*in_maps_)[object].push_back({thing, stored_.since(thing).value_or("")});
     for (auto& [object, things] : *in_maps_) std::sort(things.begin(), things.end());
     for (const std::string& thing : names->outdated) {
-      if (!stored_.endsOf(thing).empty()) ended_.insert(thing);
-      if (!stored_.replacementsOf(thing).empty()) replaced_since_.insert(thing);
+      if (!stored_.replacementsOf(thing).empty())
+        replaced_since_.insert(thing);
+      else if (!stored_.endsOf(thing).empty())
+        ended_since_.insert(thing);
     }
+    replaced_ = replaced_since_;
   }
 
   void run(const std::vector<ObjectMembers>& before, const std::vector<ObjectMembers>& after, ObjectsOf objects_of) {
@@ -127,8 +130,12 @@ class Naming {
     }
     for (std::size_t a = 0; a < after.size(); ++a) link(after[a].id, *names[a]);
     for (std::size_t b = 0; b < before.size(); ++b)
-      for (const Thing& thing : namesOf(before[b].id))
-        if (!isHeld(thing.iri)) end(thing, heirs.heir_of[b] ? names[*heirs.heir_of[b]] : std::nullopt);
+      for (const Thing& thing : namesOf(before[b].id)) {
+        if (isHeld(thing.iri)) continue;
+        const std::optional<std::size_t> heir = heirs.heir_of[b];
+        const bool goes_on = heir && (!ended_since_.contains(thing.iri) || holdsMostOf(before[b], after[*heir]));
+        end(thing, goes_on ? names[*heir] : std::nullopt);
+      }
     writer_.flush();
   }
 
@@ -239,11 +246,10 @@ class Naming {
   }
 
   /// `heir`: the thing whose object continues that of the one that ends. A thing that ended earlier keeps that time,
-  /// and what has replaced it since.
+  /// and what has replaced it since. Of several objects with this name the first with an heir counts.
   void end(const Thing& thing, const std::optional<Thing>& heir) {
-    if (!ended_.insert(thing.iri).second) return;
     if (stored_.endsOf(thing.iri).empty()) add(thing.iri, provenance("invalidatedAtTime"), timeTerm());
-    if (!heir) return;
+    if (!heir || !replaced_.insert(thing.iri).second) return;
     derive(heir->iri, thing.iri);
     const std::vector<Term> earlier = stored_.replacementsOf(thing.iri);
     if (!earlier.empty() && !had_object_.contains(thing.iri)) return;
@@ -259,9 +265,10 @@ class Naming {
   Things things_;                         ///< of the objects that were looked up
   std::optional<Things> in_maps_;         ///< of a merge
   std::set<std::string> replaced_since_;  ///< of a merge: those that what became of an older map has replaced
+  std::set<std::string> ended_since_;     ///< of a merge: those that it has ended, and replaced by nothing
   std::set<std::string> had_object_;      ///< things of objects before
   std::set<std::string> held_;            ///< things that an object of the change has after it
-  std::set<std::string> ended_;           ///< things of which the end is written
+  std::set<std::string> replaced_;        ///< things of which it is written what replaces them
 };
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include "mapping/change/object_successors.hpp"
 
 #include <algorithm>
+#include <set>
 
 namespace cluxel::mapping {
 
@@ -97,6 +98,13 @@ class SuccessorSearch {
 
 Shared successorsOf(const ObjectList& before, ObjectsOf objects_of, const ObjectList& after) {
   return SuccessorSearch(before, objects_of, after).run();
+}
+
+bool holdsMostOf(const ObjectMembers& before, const ObjectMembers& after) {
+  const std::set<std::uint64_t> seeds(after.seeds.begin(), after.seeds.end());
+  const auto shared =
+      std::count_if(before.seeds.begin(), before.seeds.end(), [&](std::uint64_t seed) { return seeds.contains(seed); });
+  return 2 * static_cast<std::size_t>(shared) > before.seeds.size();
 }
 
 }  // namespace cluxel::mapping

@@ -16,4 +16,8 @@ namespace cluxel::mapping {
 std::vector<std::vector<SharedMembers>> successorsOf(const ObjectList& before, ObjectsOf objects_of,
                                                      const ObjectList& after);
 
+/// Whether an object after has most of the members of one before by their seeds: it is surely the same, and nothing
+/// that merely stands near. Cost: n log n in the members.
+bool holdsMostOf(const ObjectMembers& before, const ObjectMembers& after);
+
 }  // namespace cluxel::mapping
