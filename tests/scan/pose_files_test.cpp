@@ -2,7 +2,11 @@
 // Tests of the four text formats of poses.
 #include "scan/poses/pose_files.hpp"
 
+#include <cmath>
+#include <iomanip>
 #include <numbers>
+#include <random>
+#include <sstream>
 
 #include "scan/scan_fixture.hpp"
 #include "scan/scan_layouts.hpp"
@@ -46,6 +50,56 @@ TEST(PoseFiles, RefuseWhatIsNoRigidMotion) {
   EXPECT_THAT(refusalOf([] { parsePoses("1 0 0 0\n0 1 0 0\n", "p"); }), HasSubstr("ends inside a 4x4 matrix"));
   EXPECT_THAT(refusalOf([] { parsePoses("1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1\n", "p"); }),
               HasSubstr("p:2:"));
+}
+
+/// `T` with so many digits after the point, in one line.
+std::string writtenWith(int digits, const Eigen::Isometry3d& T) {
+  std::ostringstream text;
+  text << std::fixed << std::setprecision(digits);
+  for (int row = 0; row < 4; ++row)
+    for (int column = 0; column < 4; ++column) text << T(row, column) << ' ';
+  return text.str() + "\n";
+}
+
+TEST(Transforms, AreRotationsWhateverTheirDigits) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> number(-1, 1);
+  for (int round = 0; round < 200; ++round) {
+    const Eigen::Quaterniond turn(number(random), number(random), number(random), number(random));
+    Eigen::Isometry3d T(turn.normalized());
+    T.translation() = Eigen::Vector3d(5000 * number(random), 5000 * number(random), number(random));
+    for (const int digits : {7, 9, 16}) {
+      const Eigen::Isometry3d read = parseTransform(writtenWith(digits, T), "T");
+      EXPECT_LE((read.linear() * read.linear().transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff(), 5e-15);
+      EXPECT_LE((read.matrix() - T.matrix()).cwiseAbs().maxCoeff(), 2 * std::pow(10, -digits) + 1e-12);
+    }
+    EXPECT_THAT(refusalOf([&] { parseTransform(writtenWith(3, T), "T"); }), HasSubstr("is no rotation"));
+  }
+}
+
+TEST(Transforms, ThatAreExactStayAsTheyAre) {
+  for (const Eigen::Isometry3d& T : {Eigen::Isometry3d::Identity(), quarterTurn()})
+    EXPECT_EQ(parseTransform(writtenWith(1, T), "T").matrix(), T.matrix());
+  EXPECT_EQ(parseTransform("1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1", "T").matrix(), Eigen::Matrix4d::Identity());
+  EXPECT_EQ(parseTransform("1 0 0 0 0 1 0 0 0 0 1 0\n", "T").matrix(), Eigen::Matrix4d::Identity());
+}
+
+TEST(Transforms, TurnAndMoveAlone) {
+  const auto refusal = [](const std::string& text) { return refusalOf([&] { parseTransform(text, "T"); }); };
+  const std::string scaled = refusal("0.9996 0 0 5000 0 0.9996 0 0 0 0 1 0\n");
+  EXPECT_THAT(scaled, HasSubstr("T:1:"));
+  EXPECT_THAT(scaled, HasSubstr("rows have lengths 0.9996, 0.9996 and 1 and are up to 0 degrees off right angles"));
+  EXPECT_THAT(scaled, HasSubstr("does not scale it; write it with at least seven digits"));
+  EXPECT_THAT(refusal("1 0.001 0 0 0 1 0 0 0 0 1 0\n"), HasSubstr("up to 0.057 degrees off right angles"));
+  EXPECT_THAT(refusal("1.00001 0 0 0 0 1 0 0 0 0 1 0\n"), HasSubstr("rows have lengths 1.00001, 1 and 1"));
+  EXPECT_THAT(refusal("0 0 0 0 0 0 0 0 0 0 0 0\n"), HasSubstr("is no rotation"));
+  EXPECT_THAT(refusal("1 0 0 0 0 -1 0 0 0 0 1 0\n"), HasSubstr("the transform mirrors space"));
+  EXPECT_THAT(refusal("1 0 0 0 0 1 0 0 0 0 1 0 16 32 0 1\n"), HasSubstr("the transform has a last row"));
+  EXPECT_THAT(refusal("1 0 0 nan 0 1 0 0 0 0 1 0\n"), HasSubstr("a number of the transform"));
+  EXPECT_THAT(refusal("0 1 2 3 0 0 0 1\n"), HasSubstr("8 columns are no known form of a transform"));
+  EXPECT_THAT(refusal("# none\n"), HasSubstr("holds no transform"));
+  EXPECT_THAT(refusal("1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 0 0 1 0 0 0 0 1 0\n"), HasSubstr("more than one transform"));
+  EXPECT_THAT(refusal("1 0 0 0\n0 1 0 0\n0 0 1 0\n"), HasSubstr("ends inside a 4x4 matrix"));
 }
 
 TEST(PoseFiles, TakeTheSecondLineOfAFreiburgPose) {

@@ -99,12 +99,7 @@ ExitCode merge(const MergeOptions& options, Session& session) {
   if (!options.transform.empty()) {
     if (maps.size() != 2)
       throw Error(ErrorKind::InvalidArgument, "--transform is for two maps: it takes the second to the first");
-    const std::vector<Eigen::Isometry3d> poses =
-        scan::parsePoses(readFile(options.transform), options.transform.string()).poses;
-    if (poses.size() != 1)
-      throw Error(ErrorKind::FaultyInput, options.transform.string() + ": holds " + std::to_string(poses.size()) +
-                                              " transforms; one is needed");
-    maps.back().T_first_map = poses.front();
+    maps.back().T_first_map = scan::parseTransform(readFile(options.transform), options.transform.string());
     maps.back().has_transform = true;
   }
   mapping::MergeParams params = options.params;

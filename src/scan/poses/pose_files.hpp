@@ -21,6 +21,14 @@ struct PoseList {
 /// (1e-3).
 PoseList parsePoses(std::string_view bytes, const std::string& file);
 
+/// The motion from the frame of one map to that of another: one matrix in a form of parsePoses(). Its rotation part
+/// must be a rotation within 1e-6, because it acts over kilometres; the nearest rotation is returned. InputError naming
+/// the line else.
+Eigen::Isometry3d parseTransform(std::string_view bytes, const std::string& file);
+
+/// Of a matrix that is nearly a rotation. One that is one within the rounding of numbers is returned as it is.
+Eigen::Matrix3d nearestRotation(const Eigen::Matrix3d& matrix);
+
 /// `Tr` (velodyne to left camera) of KITTI's calib.txt.
 Eigen::Isometry3d parseKittiCalibration(std::string_view bytes, const std::string& file);
 
