@@ -120,6 +120,11 @@ TEST_F(ChangeCommands, ExtendTellsOfOtherTimes) {
   EXPECT_THAT(run("extend " + map + " " + later).err, HasSubstr("4 known scans have later times now"));
   ASSERT_EQ(build(later, "later.clx"), 0);
   EXPECT_TRUE(canonical("copy.clx") == canonical("later.clx"));
+  const auto merged = [&](const std::string& maps) { return run("merge " + maps + " --force -o " + in("times.clx")); };
+  EXPECT_THAT(merged(in("whole.clx") + " " + in("later.clx")).err, HasSubstr("4 known scans have later times now"));
+  EXPECT_TRUE(canonical("times.clx") == canonical("later.clx"));
+  EXPECT_THAT(merged(in("later.clx") + " " + in("whole.clx")).err, HasSubstr("4 known scans are given earlier times"));
+  EXPECT_TRUE(canonical("times.clx") == canonical("later.clx"));
   expectError(run("extend " + map + " " + in("a.clx")), 2, "is a map, not a scan");
 }
 

@@ -151,6 +151,23 @@ TEST_F(MapMerge, RefusesWhatHasNoOneAnswerAndLeavesNothing) {
   EXPECT_FALSE(fs::exists(target().string() + ".merging"));
 }
 
+TEST_F(MapMerge, TellsWhatIsWrongWithATransformOrTheScansOfTwoFrames) {
+  Eigen::Isometry3d shift = Eigen::Isometry3d::Identity();
+  shift.translation().x() = 0.1;
+  const fs::path a = built({0, 1}, "a"), b = built({1, 2}, "b", shift);
+  EXPECT_THAT(refusal({{a}, {b}}), testing::AllOf(HasSubstr("with another pose (0.100 m and 0.000 degrees away)"),
+                                                  HasSubstr("give it the same pose in both")));
+  shift.translation().x() = -0.1 + 1e-9;
+  EXPECT_THAT(refusal({{a}, {b, shift, true}}), testing::AllOf(HasSubstr("with a pose that differs by rounding alone"),
+                                                               HasSubstr("retract it from one of them")));
+  for (const Eigen::Vector3d& far : {Eigen::Vector3d(1e8, 0, 0), Eigen::Vector3d(0, 0, 3e4)}) {
+    shift.translation() = far;
+    EXPECT_THAT(refusal({{a}, {b, shift, true}}), HasSubstr("check the translation of the transform"));
+  }
+  EXPECT_FALSE(fs::exists(target()));
+  EXPECT_FALSE(fs::exists(target().string() + ".merging"));
+}
+
 TEST_F(MapMerge, ReplacesNoFileThatIsNoMap) {
   const std::vector<MapToMerge> maps{{built({0}, "a")}, {built({1}, "b")}};
   writeFile(target(), "what somebody wrote\n");

@@ -7,13 +7,13 @@
 #include <set>
 
 #include "base/file_bytes.hpp"
-#include "base/utc_time.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/build/operator_statements.hpp"
 #include "mapping/change/map_compaction.hpp"
 #include "mapping/change/map_things.hpp"
 #include "mapping/change/place_order.hpp"
 #include "mapping/change/scan_additions.hpp"
+#include "mapping/clouds/merged_scans.hpp"
 #include "mapping/facts/map_history.hpp"
 #include "mapping/map_reader.hpp"
 #include "mapping/map_state.hpp"
@@ -83,10 +83,10 @@ class Merge {
     base_ = largest();
     requireMapOrNothing();
     if (fs::exists(target_) && !params_.force) return reportOfMerged();
+    requireScansToFit();
     removeBeside();
     if (temporary_) sink_.note(noteOfCopy(target_));
-    rdf::Environment::open(maps_[base_].file, rdf::OpenMode::ReadOnly)->compactTo(beside_, rdf::CopiedPages::AsTheyAre);
-    ChangeReport report = addOthers();
+    ChangeReport report = mergeBeside();
     if (!params_.change.dry_run) replaceByMerged(beside_, target_, sink_);
     return report;
   }
@@ -132,6 +132,13 @@ class Merge {
     }
   }
 
+  void requireScansToFit() const {
+    ScansOfMaps scans;
+    for (std::size_t i = 0; i < maps_.size(); ++i)
+      scans.add(maps_[i].file.string(), readers_[i].clouds(), maps_[i].T_first_map,
+                maps_[i].has_transform || !maps_[i].T_first_map.matrix().isIdentity(0));
+  }
+
   /// A command that was killed after it had replaced the target may be repeated.
   ChangeReport reportOfMerged() {
     if (!isMerged()) throw Error(ErrorKind::InvalidArgument, target_.string() + ": exists already", Remedy::ReplaceMap);
@@ -156,35 +163,14 @@ class Merge {
       for (std::size_t i = 0; i < maps_.size(); ++i) {
         const std::set<std::string> own = activitiesIn(readers_[i].quads());
         if (!std::includes(activities.begin(), activities.end(), own.begin(), own.end())) return false;
-        if (!addScansOf(readers_[i], maps_[i].T_first_map, scans)) return false;
+        if (!addScanInputs(readers_[i].clouds(), maps_[i].T_first_map, scans)) return false;
       }
       std::map<scan::ScanId, ScanInputs> merged;
-      addScansOf(target, Eigen::Isometry3d::Identity(), merged);
+      addScanInputs(target.clouds(), Eigen::Isometry3d::Identity(), merged);
       return merged == scans && canonicalTextsOf(operatorStatements(target.quads())) == textsOfResult();
     } catch (const Error&) {
       return false;  // no map, or one of another version
     }
-  }
-
-  /// What of a scan a map follows from, beside what it measured.
-  struct ScanInputs {
-    bool has_pose = false;
-    Eigen::Matrix4d pose = Eigen::Matrix4d::Identity();
-    std::optional<double> time_s;
-    bool operator==(const ScanInputs&) const = default;
-  };
-  /// Returns false when a scan has two poses.
-  static bool addScansOf(const MapReader& map, const Eigen::Isometry3d& T_first_map,
-                         std::map<scan::ScanId, ScanInputs>& scans) {
-    for (const Cloud& cloud : map.clouds()) {
-      ScanInputs inputs{cloud.has_pose, (T_first_map * cloud.T_map_sensor).matrix(), toMicroseconds(cloud.time_s)};
-      const auto [known, is_new] = scans.emplace(cloud.id, inputs);
-      if (is_new) continue;
-      known->second.time_s = std::max(known->second.time_s, inputs.time_s);  // as when a scan is stored
-      inputs.time_s = known->second.time_s;
-      if (known->second != inputs) return false;
-    }
-    return true;
   }
 
   /// The canonical texts of graph `operator` of the result.
@@ -206,6 +192,18 @@ class Merge {
       if (maps_[i].T_first_map.matrix().isIdentity(0) && readers_[i].summary().points > readers_[best].summary().points)
         best = i;
     return best;
+  }
+
+  ChangeReport mergeBeside() {
+    try {
+      rdf::Environment::open(maps_[base_].file, rdf::OpenMode::ReadOnly)
+          ->compactTo(beside_, rdf::CopiedPages::AsTheyAre);
+      return addOthers();
+    } catch (const rdf::NoSpaceLeft& error) {
+      throw Error(ErrorKind::StoreUnavailable, error.fault() + "; " + target_.string() +
+                                                   " is not written, and the maps that were to be merged are as they "
+                                                   "were: free some space and run again");
+    }
   }
 
   ChangeReport addOthers() {

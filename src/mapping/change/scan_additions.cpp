@@ -22,7 +22,7 @@ void ScanAdditions::add(const scan::Scan& scan, std::size_t scans_left) {
   noteGivenTime(scan);
   if (segments.empty()) {
     ++editor_.result().scans_already_there;
-    countOtherTime(scan, known->time_s, storedCloud(*transaction_, scan.id)->time_s);
+    countOtherTime(scan.time_s, known->time_s, storedCloud(*transaction_, scan.id)->time_s);
     return;
   }
   noteAdded(*storedCloud(*transaction_, scan.id));
@@ -44,12 +44,12 @@ void ScanAdditions::commitMany() {
   points_to_commit_ = 0;
 }
 
-void ScanAdditions::countOtherTime(const scan::Scan& scan, std::optional<double> before_s,
+void ScanAdditions::countOtherTime(std::optional<double> given_s, std::optional<double> before_s,
                                    std::optional<double> now_s) {
   has_other_changes_ = has_other_changes_ || now_s != before_s;
   if (now_s != before_s)
     ++later_times_;
-  else if (!editor_.params().takes_given_times && scan.time_s && scan.time_s != toMicroseconds(before_s))
+  else if (!editor_.params().takes_given_times && given_s && toMicroseconds(given_s) != toMicroseconds(before_s))
     ++earlier_times_;
 }
 
@@ -95,10 +95,13 @@ void ScanAdditions::copy(const rdf::ReadTransaction& other, bool is_lender) {
   transaction();
   if (changes_.hasAdded()) editor_.update(*transaction_, std::exchange(changes_, {}), editor_.sink());
   for (const Cloud& cloud : storedClouds(other)) {
-    if (copyScan(*transaction_, other, cloud))
+    const std::optional<Cloud> known = storedCloud(*transaction_, cloud.id);
+    if (copyScan(*transaction_, other, cloud)) {
       noteAdded(cloud);
-    else
-      ++editor_.result().scans_already_there;
+      continue;
+    }
+    ++editor_.result().scans_already_there;
+    countOtherTime(cloud.time_s, known->time_s, storedCloud(*transaction_, cloud.id)->time_s);
   }
   // What objects of the other map follow from is told with them: it is taken where that is the same.
   for (const std::string_view table : {tables::kPresence, tables::kPassedRays}) copyRows(*transaction_, table, other);

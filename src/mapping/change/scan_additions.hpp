@@ -38,7 +38,7 @@ class ScanAdditions {
   void commitMany();
   void noteAdded(const Cloud& cloud);
   /// A scan that is there may be given with another time.
-  void countOtherTime(const scan::Scan& scan, std::optional<double> before_s, std::optional<double> now_s);
+  void countOtherTime(std::optional<double> given_s, std::optional<double> before_s, std::optional<double> now_s);
   /// The latest of the times with which a scan was given becomes that of the map, with takes_given_times.
   void noteGivenTime(const scan::Scan& scan);
   void takeEarlierTimes();

@@ -108,8 +108,7 @@ void keepLaterTime(rdf::WriteTransaction& transaction, Cloud there, std::optiona
 /// Poses that are closer differ because numbers were written or computed in another way.
 constexpr double kRounding_m = 1e-6, kRounding_deg = 1e-6;
 
-/// "with another pose (0.123 m and 0.450 degrees away)".
-std::string differenceOf(const Eigen::Isometry3d& given, const Eigen::Isometry3d& there) {
+std::string textOfDifference(const Eigen::Isometry3d& given, const Eigen::Isometry3d& there) {
   const double moved_m = (given.translation() - there.translation()).norm();
   const double turned_deg =
       Eigen::AngleAxisd(given.linear() * there.linear().transpose()).angle() * 180 / std::numbers::pi;
@@ -119,17 +118,21 @@ std::string differenceOf(const Eigen::Isometry3d& given, const Eigen::Isometry3d
   return text.data();
 }
 
+bool haveEqualPoses(const Cloud& a, const Cloud& b) {
+  return numbersOf(a.T_map_sensor) == numbersOf(b.T_map_sensor) && a.has_pose == b.has_pose;
+}
+
 /// Whether the map has the scan, which then gets the later of the two times. Refuses it with another pose: sensor
 /// positions are stored only for scans with a pose, so a scan given with and without one would make the map depend on
 /// arrival order.
 bool isThere(rdf::WriteTransaction& transaction, const Cloud& given) {
   auto there = storedCloud(transaction, given.id);
   if (!there) return false;
-  if (numbersOf(there->T_map_sensor) == numbersOf(given.T_map_sensor) && there->has_pose == given.has_pose) {
+  if (haveEqualPoses(given, *there)) {
     keepLaterTime(transaction, *std::move(there), given.time_s);
     return true;
   }
-  const std::string how = there->has_pose == given.has_pose ? differenceOf(given.T_map_sensor, there->T_map_sensor)
+  const std::string how = there->has_pose == given.has_pose ? textOfDifference(given.T_map_sensor, there->T_map_sensor)
                           : given.has_pose                  ? "now with a pose"
                                                             : "now without a pose";
   throw InputError({.file = given.source}, "is the same scan as '" + there->source + "' of the map, " + how,
@@ -238,6 +241,12 @@ void storeTiles(rdf::WriteTransaction& transaction, const TileSet& tiles) {
   std::string bytes;
   for (const perception::TileKey& tile : tiles) bytes += tables::keyOf(tile);
   transaction.putBlock(tables::kMeta, tables::kTilesKey, bytes);
+}
+
+std::optional<std::string> differenceOfPoses(const Cloud& given, const Cloud& there) {
+  if (haveEqualPoses(given, there)) return std::nullopt;
+  if (given.has_pose != there.has_pose) return given.has_pose ? "with a pose" : "without a pose";
+  return textOfDifference(given.T_map_sensor, there.T_map_sensor);
 }
 
 PreparedScan prepareScan(const scan::Scan& scan) {

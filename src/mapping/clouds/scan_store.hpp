@@ -71,6 +71,10 @@ PreparedScan prepareScan(const scan::Scan& scan);
 ScanSegments storeScan(rdf::WriteTransaction& transaction, const scan::Scan& scan);
 ScanSegments storeScan(rdf::WriteTransaction& transaction, PreparedScan scan);
 
+/// How the pose of a scan differs from the one that it has elsewhere: "with another pose (0.123 m and 0.450 degrees
+/// away)". Nothing where both are equal.
+std::optional<std::string> differenceOfPoses(const Cloud& given, const Cloud& there);
+
 /// Gives a stored scan another time.
 void storeTime(rdf::WriteTransaction& transaction, Cloud cloud, double time_s);
 

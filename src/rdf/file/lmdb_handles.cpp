@@ -6,6 +6,7 @@
 #include <string>
 
 #include "cluxel/error.hpp"
+#include "rdf/file/map_replacement.hpp"
 
 namespace cluxel::rdf {
 
@@ -37,9 +38,7 @@ std::string explain(int code, std::string_view doing) {
     case ENOSPC:
     case EFBIG:
     case EDQUOT:
-      return attempt +
-             "no space is left on the disk, the file may not become larger (ulimit -f), or the disk fails; the map "
-             "keeps its last commit: free some space and run again";
+      return attempt + "no space is left on the disk, the file may not become larger (ulimit -f), or the disk fails";
     case EROFS:
       return attempt + "the file system is read-only; write to another one, or mount it for writing";
     case EACCES:
@@ -55,6 +54,8 @@ std::string explain(int code, std::string_view doing) {
 }  // namespace
 
 void failStore(const std::filesystem::path& file, int code, std::string_view doing) {
+  if (code == EIO || code == ENOSPC || code == EFBIG || code == EDQUOT)
+    throw NoSpaceLeft(file.string() + ": " + explain(code, doing));
   throw Error(ErrorKind::StoreUnavailable, file.string() + ": " + explain(code, doing));
 }
 

@@ -31,6 +31,20 @@ class LockFileOutdated : public Error {
   explicit LockFileOutdated(const std::filesystem::path& map);
 };
 
+/// LMDB could not write a file, because the disk is full or fails. What stays unchanged by that, the caller may know
+/// better: what() is about a map that was to be changed.
+class NoSpaceLeft : public Error {
+ public:
+  /// `fault`: file and cause.
+  explicit NoSpaceLeft(const std::string& fault)
+      : Error(ErrorKind::StoreUnavailable, fault + "; the map keeps its last commit: free some space and run again"),
+        fault_(fault) {}
+  const std::string& fault() const { return fault_; }
+
+ private:
+  std::string fault_;
+};
+
 /// A write transaction on the file that is now called `map`; reopens it when it was replaced, or changed under another
 /// name, during the wait. Throws MapBusy when another process still holds the lock after `patience` (at least 1.5 s),
 /// and LockFileOutdated when other processes keep the map open as long with a lock file that is out of date.
