@@ -54,11 +54,9 @@ void ScansOfMaps::add(const std::string& map, std::vector<Cloud> clouds, const E
     const auto& [other, there] = entry->second;
     const auto difference = differenceOfPoses(cloud, there);
     if (!difference) continue;
+    const std::string otherwise = there.has_pose ? " with one" : " without one";
     const std::string fault = "holds the scan of '" + cloud.source + "' " + *difference + ", and " + other +
-                              " holds the same scan" +
-                              (there.has_pose == cloud.has_pose ? ""
-                               : there.has_pose                 ? " with one"
-                                                                : " without one");
+                              " holds the same scan" + (there.has_pose == cloud.has_pose ? "" : otherwise);
     if (has_transform)
       throw InputError({.file = map}, fault + " in its frame",
                        "of maps in two frames one holds a scan: retract it from one of them");
