@@ -297,7 +297,7 @@ TEST(StoreErrors, TellWhatTheSystemRefused) {
             "writing");
   EXPECT_THAT(told(EACCES), HasSubstr("permission denied; check the rights"));
   EXPECT_THAT(told(ENOMEM), HasSubstr("no address space is left; raise the limit"));
-  EXPECT_THAT(told(EDQUOT), HasSubstr("free some space"));
+  EXPECT_THAT(told(EDQUOT), HasSubstr("no space is left on the disk"));
 }
 
 }  // namespace
