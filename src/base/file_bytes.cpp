@@ -34,7 +34,8 @@ using File = std::unique_ptr<std::FILE, decltype(&std::fclose)>;
   throw Error(ErrorKind::StoreUnavailable, path.string() + ": " + what + ": " + std::strerror(errno));
 }
 
-/// A file that is being written. Its name is taken away again unless it was moved into place.
+/// A file that is being written. It has no name until it is whole, where the system can do that; else its name is taken
+/// away again unless it was moved into place.
 class WrittenFile {
  public:
   /// `meant`: the file that the user named, for messages.
@@ -52,17 +53,18 @@ class WrittenFile {
     if (descriptor_ < 0) refuseToWrite(meant_, "cannot be written");
   }
 
-  /// Makes a new file beside `target` under a name that nobody has.
+  /// Makes a new file beside `target`. A process that is killed leaves nothing of one without a name.
   void openBeside(const fs::path& target) {
-    static std::atomic<unsigned> count{0};
-    for (int attempt = 0; descriptor_ < 0 && attempt < 1000; ++attempt) {
-      const std::string name =
-          target.string() + ".partial-" + std::to_string(::getpid()) + "-" + std::to_string(count++);
-      descriptor_ = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-      if (descriptor_ >= 0) partial_ = name;
-      if (descriptor_ < 0 && errno != EEXIST) break;
-    }
-    if (descriptor_ < 0) refuseToWrite(meant_, "cannot be written");
+    target_ = target;
+    const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
+    if (::access("/proc/self/fd", X_OK) == 0)  // names are given by it
+      descriptor_ = ::open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
+    is_nameless_ = descriptor_ >= 0;
+    if (!is_nameless_)
+      withNewName([&](const std::string& name) {
+        descriptor_ = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        return descriptor_ >= 0;
+      });
     struct stat old {};
     if (::stat(target.c_str(), &old) == 0) (void)!::fchmod(descriptor_, old.st_mode & 07777U);
   }
@@ -78,8 +80,13 @@ class WrittenFile {
 
   /// What the disk refuses late shows here. Pipes and some file systems cannot be synchronised.
   void close() {
-    if (!partial_.empty() && ::fsync(descriptor_) != 0 && errno != EINVAL && errno != ENOSYS && errno != EOPNOTSUPP)
+    if (!target_.empty() && ::fsync(descriptor_) != 0 && errno != EINVAL && errno != ENOSYS && errno != EOPNOTSUPP)
       refuseToWrite(meant_, "cannot be written whole");
+    if (is_nameless_)
+      withNewName([&](const std::string& name) {
+        const std::string open_file = "/proc/self/fd/" + std::to_string(descriptor_);
+        return ::linkat(AT_FDCWD, open_file.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0;
+      });
     if (::close(std::exchange(descriptor_, -1)) != 0 && errno != EINTR)
       refuseToWrite(meant_, "cannot be written whole");
   }
@@ -91,8 +98,26 @@ class WrittenFile {
   }
 
  private:
+  /// Tries names beside the target until one is new. `make` returns false with errno.
+  template <typename Make>
+  void withNewName(const Make& make) {
+    static std::atomic<unsigned> count{0};
+    for (int attempt = 0; attempt < 1000; ++attempt) {
+      const std::string name =
+          target_.string() + ".partial-" + std::to_string(::getpid()) + "-" + std::to_string(count++);
+      if (make(name)) {
+        partial_ = name;
+        return;
+      }
+      if (errno != EEXIST) break;
+    }
+    refuseToWrite(meant_, "cannot be written");
+  }
+
   const fs::path& meant_;
-  fs::path partial_;
+  fs::path target_;   ///< beside which it is written
+  fs::path partial_;  ///< its name until it is moved
+  bool is_nameless_ = false;
   int descriptor_ = -1;
 };
 

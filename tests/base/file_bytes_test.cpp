@@ -13,6 +13,7 @@
 #include <fstream>
 #include <thread>
 
+#include "base/file_pieces.hpp"
 #include "cluxel/error.hpp"
 
 namespace cluxel {
@@ -76,6 +77,22 @@ TEST_F(FileBytes, LeaveTheOldFileWhenTheDiskIsFull) {
   EXPECT_EQ(status, 0);
   EXPECT_EQ(readFile(folder_ / "a"), "old");
   EXPECT_EQ(filesThere(), 1U);
+}
+
+TEST_F(FileBytes, HaveNoNameUntilTheyAreWhole) {
+  writeFile(folder_ / "a", "old");
+  ::chmod((folder_ / "a").c_str(), 0640);
+  writeFileInPieces(folder_ / "a", [&](const auto& take) {
+    take("first ");
+    EXPECT_EQ(filesThere(), 1U) << "whoever is killed here leaves a file";
+    take("second");
+    EXPECT_EQ(readFile(folder_ / "a"), "old");
+  });
+  EXPECT_EQ(readFile(folder_ / "a"), "first second");
+  EXPECT_EQ(filesThere(), 1U);
+  struct stat now {};
+  ASSERT_EQ(::stat((folder_ / "a").c_str(), &now), 0);
+  EXPECT_EQ(now.st_mode & 07777U, 0640U);
 }
 
 TEST_F(FileBytes, OfTheUserAreNotOverwrittenWhateverTheirNames) {

@@ -97,6 +97,12 @@ TEST_F(UpdateReports, OfADryRunAreThoseOfTheChangeAndNothingIsWritten) {
 
   EXPECT_EQ(loadRdfFiles(none, {file}, {.dry_run = true}, silence()).added, 1U);
   EXPECT_FALSE(fs::exists(none)) << "a dry run makes no store";
+  EXPECT_THROW(loadRdfFiles(folder_.path() / "no" / "store.clx", {file}, {.dry_run = true}, silence()), Error);
+  writeFile(none, "");
+  const auto written = fs::last_write_time(none);
+  EXPECT_EQ(loadRdfFiles(none, {file}, {.dry_run = true}, silence()).added, 1U);
+  EXPECT_EQ(fs::last_write_time(none), written) << "nor fills one, which others may load into meanwhile";
+  EXPECT_EQ(fs::file_size(none), 0U);
 }
 
 TEST_F(UpdateReports, OfAFactThatIsAboutNoObjectNameNone) {

@@ -40,10 +40,11 @@ ExitCode load(const LoadOptions& options, Session& session) {
     printJson(json);
     return ExitCode::Done;
   }
+  const bool looked_at_objects = report.change.tiles_decided > 0;
   std::printf("%llu statements read, %llu of them new%s\n", static_cast<unsigned long long>(report.statements),
               static_cast<unsigned long long>(report.added),
-              dry_run && !report.change.has_changes ? " (dry run, nothing written)" : "");
-  if (report.change.has_changes) printChange(options.store, report.change, {.dry_run = dry_run}, session);
+              dry_run && !looked_at_objects ? " (dry run, nothing written)" : "");
+  if (looked_at_objects) printChange(options.store, report.change, {.dry_run = dry_run}, session);
   return ExitCode::Done;
 }
 

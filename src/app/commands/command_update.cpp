@@ -68,10 +68,11 @@ void printReport(const UpdateArguments& arguments, const mapping::MapUpdateRepor
     if (report.is_map) json["change"] = changeJson(arguments.map, report.change, arguments.dry_run);
     return printJson(json);
   }
+  const bool looked_at_objects = report.change.tiles_decided > 0;
   std::printf("%llu inserted, %llu deleted%s\n", static_cast<unsigned long long>(report.inserted),
               static_cast<unsigned long long>(report.deleted),
-              arguments.dry_run && !report.change.has_changes ? " (dry run, nothing written)" : "");
-  if (report.change.has_changes) printChange(arguments.map, report.change, {.dry_run = arguments.dry_run}, session);
+              arguments.dry_run && !looked_at_objects ? " (dry run, nothing written)" : "");
+  if (looked_at_objects) printChange(arguments.map, report.change, {.dry_run = arguments.dry_run}, session);
 }
 
 ExitCode update(const UpdateArguments& arguments, Session& session) {

@@ -2,6 +2,7 @@
 // Statements go from the parser to the store one by one.
 #include "mapping/change/rdf_loading.hpp"
 
+#include <optional>
 #include <set>
 
 #include "cluxel/error.hpp"
@@ -20,7 +21,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A store that this run has made, perhaps of an empty file; that is as it was unless the store is kept.
+bool isAbsent(const fs::path& file) {
+  std::error_code ignored;
+  return !fs::exists(file, ignored);
+}
+bool isEmpty(const fs::path& file) {
+  std::error_code ignored;
+  return fs::is_regular_file(file, ignored) && fs::file_size(file, ignored) == 0;
+}
+
+/// A store that this run has made, perhaps of an empty file; that is as it was unless the store is kept, or somebody
+/// else has written to it meanwhile.
 class NewStore {
  public:
   explicit NewStore(const fs::path& file) : file_(file), is_absent_(isAbsent(file)) {
@@ -29,32 +40,35 @@ class NewStore {
   }
   ~NewStore() {
     if (!environment_ || is_kept_) return;
-    environment_.reset();
-    std::error_code ignored;
-    if (is_absent_)
-      fs::remove(file_, ignored);
-    else
-      fs::resize_file(file_, 0, ignored);
-    fs::remove(file_.string() + "-lock", ignored);
+    try {
+      std::error_code ignored;
+      {
+        const rdf::WriteTransaction alone = environment_->write();
+        if (rdf::QuadReader(static_cast<const rdf::ReadTransaction&>(alone)).size() > 0) return;
+        if (is_absent_) fs::remove(file_, ignored);
+      }
+      environment_.reset();
+      if (!is_absent_) fs::resize_file(file_, 0, ignored);
+      fs::remove(file_.string() + "-lock", ignored);
+    } catch (const Error&) {  // somebody else has it: it stays
+    }
   }
   NewStore(const NewStore&) = delete;
   NewStore& operator=(const NewStore&) = delete;
   void keep() { is_kept_ = true; }
 
  private:
-  static bool isAbsent(const fs::path& file) {
-    std::error_code ignored;
-    return !fs::exists(file, ignored);
-  }
-  static bool isEmpty(const fs::path& file) {
-    std::error_code ignored;
-    return fs::is_regular_file(file, ignored) && fs::file_size(file, ignored) == 0;
-  }
-
   fs::path file_;
   bool is_absent_, is_kept_ = false;
   std::shared_ptr<rdf::Environment> environment_;
 };
+
+/// What a dry run writes to, and forgets: of a store that is not there or empty, a temporary one.
+rdf::WriteTransaction triedStore(const fs::path& store, ProgressSink& sink) {
+  const bool could_be_made = isAbsent(store) && fs::is_directory(fs::absolute(store).parent_path());
+  if (could_be_made || isEmpty(store)) return rdf::Environment::temporary()->write();
+  return writeOrCopy(store, true, sink);
+}
 
 void requireOperatorGraph(const fs::path& store, const Quad& quad) {
   if (quad.graph.text == rdf::vocabulary::kGraphOperator) return;
@@ -118,8 +132,9 @@ RdfLoadReport load(rdf::WriteTransaction& transaction, const fs::path& store, co
 
 RdfLoadReport loadRdfFiles(const fs::path& store, const std::vector<fs::path>& files, const RdfLoadParams& params,
                            ProgressSink& sink) {
-  NewStore made(store);
-  rdf::WriteTransaction transaction = writeOrCopy(store, params.dry_run, sink);
+  std::optional<NewStore> made;
+  if (!params.dry_run) made.emplace(store);
+  rdf::WriteTransaction transaction = params.dry_run ? triedStore(store, sink) : rdf::writeMap(store);
   refuseUncommittedBuild(transaction, store);
   const bool is_map = requireFinished(store, transaction);
   RdfLoadParams own = params;
@@ -133,7 +148,7 @@ RdfLoadReport loadRdfFiles(const fs::path& store, const std::vector<fs::path>& f
   }
   if (!params.dry_run) {
     transaction.commit();
-    made.keep();
+    made->keep();
   }
   notes.give();
   return report;

@@ -2,6 +2,7 @@
 // A faulty transform is told by bounds, before scans are moved one by one.
 #include "mapping/clouds/merged_scans.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cstdio>
@@ -14,19 +15,23 @@ namespace cluxel::mapping {
 
 namespace {
 
+/// Refuses a transform that moves the whole box of a scan out of the range. Where a part of it is in the range, its
+/// points are looked at when they are stored.
 void requireInRange(const std::string& map, const Cloud& cloud, const Eigen::Isometry3d& T) {
   if (cloud.point_count == 0) return;
+  Eigen::AlignedBox3d moved;
   for (int corner = 0; corner < 8; ++corner) {
     const auto side = [&](int axis) { return ((corner >> axis) & 1) != 0 ? cloud.max[axis] : cloud.min[axis]; };
-    const Eigen::Vector3d p = T * Eigen::Vector3d(side(0), side(1), side(2));
-    if (scan::isInMapRange(p)) continue;
-    std::array<char, 128> place{};
-    std::snprintf(place.data(), place.size(), "%.6g %.6g %.6g", p.x(), p.y(), p.z());
-    throw Error(ErrorKind::FaultyInput,
-                map + ": the transform moves points to about " + place.data() +
-                    ", out of the range of a map; coordinates may reach 10000 km, heights 20 km: check the translation "
-                    "of the transform");
+    moved.extend(T * Eigen::Vector3d(side(0), side(1), side(2)));
   }
+  const Eigen::Vector3d nearest = Eigen::Vector3d::Zero().cwiseMax(moved.min()).cwiseMin(moved.max());
+  if (scan::isInMapRange(nearest)) return;
+  std::array<char, 128> place{};
+  std::snprintf(place.data(), place.size(), "%.1f %.1f %.1f", nearest.x(), nearest.y(), nearest.z());
+  throw Error(ErrorKind::FaultyInput,
+              map + ": the transform moves points to about " + place.data() +
+                  ", out of the range of a map; coordinates may reach 10000 km, heights 20 km: check the translation "
+                  "of the transform");
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ void SceneFacts::begin(std::shared_future<WayGraph> ways) {
   telling_ = std::async(std::launch::async, [this, ways = std::move(ways)] {
     ways.wait();
     tell();
-    transaction_.writePages();  // the commit, beside which nothing runs, has less to write then
+    transaction_.writePages();  // so that the commit, which uses one thread, has fewer left
   });
 }
 

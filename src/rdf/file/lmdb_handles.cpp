@@ -30,8 +30,8 @@ std::string explain(int code, std::string_view doing) {
     case MDB_MAP_RESIZED:
     case ENOMEM:
       return attempt +
-             "no address space is left; raise the limit (ulimit -v): each map, also a temporary one, takes its length "
-             "and room to grow";
+             "no address space is left; raise the limit (ulimit -v): each map, also a temporary one, reserves address "
+             "space for the file and its growth";
     case MDB_READERS_FULL:
       return attempt + "too many readers are at work; wait for some to end";
     case EIO:  // LMDB reports a short write as EIO

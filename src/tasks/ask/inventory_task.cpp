@@ -116,7 +116,7 @@ TaskRow changeRow(const mapping::MapReader& map, const SiteChange& change) {
 std::string presenceLine(const ObjectStates& states) {
   std::array<char, 160> line{};
   std::snprintf(line.data(), line.size(),
-                "before: %s (log-odds %.1f, %.0f %% of its places), since: %s (%.1f, %.0f %% of its places)",
+                "before: %s (log-odds %.1f, scans saw %.0f %% of its places), since: %s (%.1f, %.0f %%)",
                 std::string(nameOf(states.before)).c_str(), states.log_odds_before, states.coverage_before * 100,
                 std::string(nameOf(states.after)).c_str(), states.log_odds_after, states.coverage_after * 100);
   return line.data();

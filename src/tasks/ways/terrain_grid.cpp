@@ -123,8 +123,8 @@ class LowPoints {
   void addLeftOut(std::uint32_t cell) { had_thing_[cell] = 1; }
 
   /// Gives each cell the median height of its points, so that a cell at a kerb has the height of the side of which it
-  /// holds more; where something stood that is left out, the height that a quarter of the points do not exceed. Where a
-  /// cell has few points, those within half a metre count, moved along the slope of the surface.
+  /// holds more; where something stood that is left out, the lower quartile of at least five heights. Where a cell has
+  /// few points, those within half a metre count, moved along the slope of the surface.
   void refine(TerrainGrid& grid) {
     std::stable_sort(points_.begin(), points_.end(), [](const auto& a, const auto& b) { return a.cell < b.cell; });
     first_.assign(frame_.size() + 1, 0);
@@ -139,10 +139,13 @@ class LowPoints {
       const Eigen::Vector2f slope(slopeOf(cell, 1, 0), slopeOf(cell, 0, 1));
       for (int ring = 0; ring <= reach && heights.size() < enough; ++ring) heightsWithin(cell, ring, slope, heights);
       if (heights.size() < enough) continue;
-      const auto middle =
-          heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / (had_thing_[cell] != 0 ? 4 : 2));
-      std::nth_element(heights.begin(), middle, heights.end());
-      grid.height[cell] = *middle;
+      // The lowest of few may be a stray return.
+      constexpr std::size_t enough_for_quartile = 5;
+      const bool takes_quartile = had_thing_[cell] != 0 && heights.size() >= enough_for_quartile;
+      const std::size_t rank = takes_quartile ? (heights.size() - 1) / 4 : heights.size() / 2;
+      const auto chosen = heights.begin() + static_cast<std::ptrdiff_t>(rank);
+      std::nth_element(heights.begin(), chosen, heights.end());
+      grid.height[cell] = *chosen;
     }
   }
 
