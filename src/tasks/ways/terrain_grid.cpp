@@ -123,7 +123,7 @@ class LowPoints {
   void addLeftOut(std::uint32_t cell) { had_thing_[cell] = 1; }
 
   /// Gives each cell the median height of its points, so that a cell at a kerb has the height of the side of which it
-  /// holds more; where something stood that is left out, the lower quartile of at least five heights. Where a cell has
+  /// holds more; where something stood that is left out, the lower quartile of at least eight heights. Where a cell has
   /// few points, those within half a metre count, moved along the slope of the surface.
   void refine(TerrainGrid& grid) {
     std::stable_sort(points_.begin(), points_.end(), [](const auto& a, const auto& b) { return a.cell < b.cell; });
@@ -137,12 +137,13 @@ class LowPoints {
       heights.clear();
       if (grid.seen[cell] == 0) continue;
       const Eigen::Vector2f slope(slopeOf(cell, 1, 0), slopeOf(cell, 0, 1));
-      for (int ring = 0; ring <= reach && heights.size() < enough; ++ring) heightsWithin(cell, ring, slope, heights);
+      // The lowest of few heights may be that of a stray return.
+      constexpr std::size_t enough_for_quartile = 8;
+      const std::size_t wanted = had_thing_[cell] != 0 ? enough_for_quartile : enough;
+      for (int ring = 0; ring <= reach && heights.size() < wanted; ++ring) heightsWithin(cell, ring, slope, heights);
       if (heights.size() < enough) continue;
-      // The lowest of few may be a stray return.
-      constexpr std::size_t enough_for_quartile = 5;
       const bool takes_quartile = had_thing_[cell] != 0 && heights.size() >= enough_for_quartile;
-      const std::size_t rank = takes_quartile ? (heights.size() - 1) / 4 : heights.size() / 2;
+      const std::size_t rank = heights.size() / (takes_quartile ? 4 : 2);
       const auto chosen = heights.begin() + static_cast<std::ptrdiff_t>(rank);
       std::nth_element(heights.begin(), chosen, heights.end());
       grid.height[cell] = *chosen;
