@@ -234,12 +234,15 @@ TEST_P(MeasuredChanges, HalfOfThePosesMovedAndCorrected) {
       moved.push_back({ids_[order[i]], poseOf(order[i], 1)});
       back.push_back({ids_[order[i]], poseOf(order[i], 0)});
     }
-    for (const auto& [moves, expected] : {std::pair(moved, fromScratch(poses)), std::pair(back, expected_)})
+    const auto expectMoved = [&](const std::vector<ScanPose>& moves, const auto& expected) {
       expectChanged(map, expected, [&](const ChangeParams& params) {
         const ChangeReport report = moveScans(map, moves, params, silence());
         EXPECT_EQ(report.scans_moved, moves.size());
         return report;
       });
+    };
+    expectMoved(moved, fromScratch(poses));
+    expectMoved(back, expected_);
   }
   EXPECT_GT(local_commits_, 0U) << "no change was computed around what changed";
 }
