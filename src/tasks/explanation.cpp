@@ -97,7 +97,7 @@ std::optional<rules::PartRun> runAround(const mapping::MapReader& map, const Exp
   for (const Around& around : {Around{1, {kAll}}, Around{2, {kAll}}, Around{3, {30, kAll}}}) {
     std::optional<mapping::MapPart> part = partAround(map, what, around.rings);
     if (!part) break;
-    // What reaches that far mostly depends on more; the next part costs little more.
+    // A part that large mostly depends on what lies around it. With the next ring it costs little more.
     constexpr std::size_t kLargePart = 150'000;  // cluxels
     if (around.rings == 1 && part->scene.cluxels.size() > kLargePart) continue;
     const auto primitives = primitivesIn(part->scene, part->objects, what);

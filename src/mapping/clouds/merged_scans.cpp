@@ -64,7 +64,7 @@ void ScansOfMaps::add(const std::string& map, std::vector<Cloud> clouds, const E
                               " holds the same scan" + (there.has_pose == cloud.has_pose ? "" : otherwise);
     if (has_transform)
       throw InputError({.file = map}, fault + " in its frame",
-                       "of maps in two frames one holds a scan: retract it from one of them");
+                       "only one of two maps in different frames may hold a scan: retract it from one of them");
     throw InputError({.file = map}, fault, "retract it from one of the maps, or give it the same pose in both",
                      Remedy::MoveScans);
   }

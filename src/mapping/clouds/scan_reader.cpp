@@ -23,7 +23,7 @@ ReadScan ScanReader::take(std::size_t number) {
   std::future<ReadScan> first = std::move(ahead_.front());
   ahead_.pop_front();
   ReadScan scan = first.get();
-  // While the caller has a small scan as many are read as there are threads. A large one is stored first.
+  // While a small scan is stored, all threads read the next ones. A large one is stored first: it takes much memory.
   constexpr std::size_t kSmall = 500'000;  // points
   if (scan.scan.cloud.point_count <= kSmall && number + 1 < scans_.size()) begin(number + 1);
   return scan;

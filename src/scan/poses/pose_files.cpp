@@ -104,8 +104,9 @@ std::string shapeOf(const Eigen::Matrix3d& rotation) {
     off_deg = std::max(off_deg, std::abs(std::asin(std::clamp(cosine, -1.0, 1.0))) * 180 / std::numbers::pi);
   }
   std::array<char, 160> text{};
-  std::snprintf(text.data(), text.size(), "its rows have lengths %.7g, %.7g and %.7g and are up to %.2g degrees off %s",
-                lengths[0], lengths[1], lengths[2], off_deg, "right angles");
+  std::snprintf(text.data(), text.size(),
+                "its rows have lengths %.7g, %.7g and %.7g and are up to %.2g degrees off right angles", lengths[0],
+                lengths[1], lengths[2], off_deg);
   return text.data();
 }
 
