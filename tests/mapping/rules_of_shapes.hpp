@@ -9,11 +9,11 @@
 
 namespace cluxel::mapping {
 
-inline const std::string kPrefixes =
+inline const std::string kRulePrefixes =
     "PREFIX clx: <https://w3id.org/cluxel/ontology#> PREFIX rdf: <http://www.w3.org/1999/02/22-rdf-syntax-ns#> ";
 
 inline NamedText rule(const std::string& name, const std::string& text) {
-  return {name, kPrefixes + text};
+  return {name, kRulePrefixes + text};
 }
 
 /// Rules of other shapes: negation, OPTIONAL, MINUS, paths, aggregates over the map, and facts that earlier rules read.
@@ -51,6 +51,28 @@ inline std::vector<NamedText> joiningRules() {
           rule("5.rq",
                "CONSTRUCT { ?a clx:far ?d } WHERE { ?a clx:minX ?m . { ?a clx:spot ?x } UNION { { ?a clx:at ?b } UNION "
                "{ ?a clx:near ?b } ?b clx:near ?c } ?c clx:minX ?x ; clx:minY ?d }")};
+}
+
+/// Rules that read what they derive: along chains and cycles, by joins of their own facts, by paths, by superclasses,
+/// and by inverse, symmetric and transitive properties.
+inline std::vector<NamedText> recursiveRules() {
+  return {rule("reach.rq",
+               "CONSTRUCT { ?a clx:reaches ?c } WHERE { { ?a clx:near ?c } UNION { ?a clx:reaches ?b . ?b clx:near ?c "
+               "} }"),
+          rule("linked.rq",
+               "CONSTRUCT { ?a clx:linked ?b . ?b clx:linked ?a } WHERE { { ?a clx:connects ?b } UNION { ?b clx:linked "
+               "?a } }"),
+          rule("within.rq",
+               "CONSTRUCT { ?a clx:within ?c } WHERE { { ?a clx:near ?c } UNION { ?a clx:within ?b . ?b clx:within ?c "
+               "} FILTER(?a != ?c) }"),
+          rule("place.rq",
+               "CONSTRUCT { ?b a clx:Avenue } WHERE { { ?b a clx:Barrier } UNION { ?a clx:near ?b . ?a a clx:Place } "
+               "UNION { ?a clx:hasPart ?b . ?a a clx:Place } }"),
+          rule("parts.rq", "CONSTRUCT { ?a clx:hasPart ?c } WHERE { ?c clx:partOf ?b . ?b clx:near ?a }"),
+          rule("near.rq", "CONSTRUCT { ?b clx:near ?c } WHERE { ?a clx:near ?b . ?a clx:connects|clx:near ?c }"),
+          rule("row.rq",
+               "CONSTRUCT { ?a clx:row ?c } WHERE { { ?a clx:hasPart ?c } UNION { ?a (clx:row|clx:of)+ ?c "
+               ". ?c a clx:Facade } }")};
 }
 
 /// Rules in which OPTIONAL, MINUS, BIND or EXISTS stands where the key is not bound: facts about one thing change the

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "mapping/inference/temporary_quads.hpp"
+#include "rdf/store/temporary_quads.hpp"
 
 namespace cluxel::mapping {
 
@@ -20,7 +20,7 @@ AffectedKeys::AffectedKeys(rdf::WriteTransaction& transaction, const rdf::Staged
       reader_(static_cast<const rdf::ReadTransaction&>(transaction)),
       steps_(stepsToKey(shape)) {}
 
-void AffectedKeys::noteGone(const std::vector<SeenChange>& changed) {
+void AffectedKeys::noteGone(std::span<const SeenChange> changed) {
   std::set<rdf::TermId> properties;
   for (const auto& [variable, steps] : steps_)
     for (const KeyStep& step : steps)
@@ -101,7 +101,7 @@ void AffectedKeys::addConnected(const rdf::Triple& fact, std::size_t read, std::
 }
 
 /// Reaches what the changed facts give the variables of patterns. False: a pattern without variables matches one.
-bool AffectedKeys::reachEnds(const std::vector<SeenChange>& changed) {
+bool AffectedKeys::reachEnds(std::span<const SeenChange> changed) {
   for (std::size_t read = 0; read < shape_.reads.size(); ++read) {
     const ast::TriplePattern& triple = shape_.reads[read].triple;
     const auto by_subject = goesBySubject(read);
@@ -163,15 +163,16 @@ void AffectedKeys::addKeysOfOthers() {
     for (const rdf::TermId value : values) some.terms.push_back(reader_.termOf(value));
   }
   if (others.empty()) return;
-  TemporaryQuads before(transaction_, goneOfSolutions(), {});
+  rdf::TemporaryQuads before(transaction_, goneOfSolutions(), {});
   std::set<rdf::TermId>& keys = reached_[shape_.key];
   for (const ValuesOf& some : others)
     for (const rdf::TermId key : affectedKeys(reader_, shape_, some, check_)) keys.insert(key);
   before.end();
 }
 
-std::optional<std::vector<rdf::TermId>> AffectedKeys::of(const std::vector<SeenChange>& changed) {
-  noteGone(changed);
+std::optional<std::vector<rdf::TermId>> AffectedKeys::of(std::span<const SeenChange> changed,
+                                                         std::span<const SeenChange> gone) {
+  noteGone(gone);
   if (!reachEnds(changed)) return std::nullopt;
   follow();
   addKeysOfOthers();

@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <span>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -29,17 +30,18 @@ class AffectedKeys {
                const RuleShape& shape, const ReadTest& reads, const rdf::InferenceCheck& check);
 
   /// A superset of the keys of which solutions differ when these facts have come to be or ceased to be; sorted. The
-  /// store must hold the facts as they are now. None: it may be any key. To be called once.
-  std::optional<std::vector<rdf::TermId>> of(const std::vector<SeenChange>& changed);
+  /// store must hold the facts as they are now. `gone`: facts, among others perhaps, that solutions before the change
+  /// may have had and that have ceased to be. None: it may be any key. To be called once.
+  std::optional<std::vector<rdf::TermId>> of(std::span<const SeenChange> changed, std::span<const SeenChange> gone);
 
  private:
   using Link = std::array<rdf::TermId, 3>;  ///< property and both ends
-  void noteGone(const std::vector<SeenChange>& changed);
+  void noteGone(std::span<const SeenChange> changed);
   std::optional<bool> goesBySubject(std::size_t read) const;
   bool mayBind(ast::VariableIndex variable, rdf::TermId value);
   bool hasConstants(ast::VariableIndex variable, rdf::TermId value) const;
   bool mayMatch(std::size_t read, const rdf::Triple& fact);
-  bool reachEnds(const std::vector<SeenChange>& changed);
+  bool reachEnds(std::span<const SeenChange> changed);
   void addConnected(const rdf::Triple& fact, std::size_t read, std::set<rdf::TermId>& connected) const;
   void reach(ast::VariableIndex variable, rdf::TermId value);
   void follow();

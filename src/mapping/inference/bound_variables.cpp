@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "mapping/inference/rule_limits.hpp"
+
 namespace cluxel::mapping {
 
 namespace ast = sparql::ast;
@@ -110,6 +112,61 @@ Variables boundIn(const ast::GroupPattern& group) {
     addOtherEnds(group, bound);
   }
   return bound;
+}
+
+namespace {
+
+/// OPTIONAL, MINUS and BIND see what stands before them in their group, and EXISTS what its group binds. So the key has
+/// to be bound there.
+class KeyBinding {
+ public:
+  explicit KeyBinding(ast::VariableIndex key) : key_(key) {}
+
+  /// `is_bound`: what is around the group binds the key.
+  bool isLocal(const ast::GroupPattern& group, bool is_bound = false) const {
+    const bool is_bound_by_all = is_bound || boundIn(group).contains(key_);
+    bool is_local = true;
+    for (const ast::PatternElement& element : group.elements) {
+      const auto* filter = std::get_if<ast::Filter>(&element.value);
+      is_local =
+          is_local && (filter != nullptr ? isLocal(filter->condition, is_bound_by_all) : isLocal(element, is_bound));
+      is_bound = is_bound || boundIn(element).contains(key_);
+    }
+    return is_local;
+  }
+
+ private:
+  bool mentions(const ast::Expression& expression) const {
+    return (expression.kind == ast::Expression::Kind::Variable && expression.variable == key_) ||
+           std::any_of(expression.arguments.begin(), expression.arguments.end(),
+                       [this](const ast::Expression& argument) { return mentions(argument); });
+  }
+
+  /// `is_bound`: what stands before the element binds the key.
+  bool isLocal(const ast::PatternElement& element, bool is_bound) const {
+    if (const auto* bind = std::get_if<ast::Bind>(&element.value))
+      return is_bound || !(bind->variable == key_ || mentions(bind->expression));
+    const bool asks_row = std::holds_alternative<ast::OptionalPattern>(element.value) ||
+                          std::holds_alternative<ast::MinusPattern>(element.value);
+    bool is_local = is_bound || !asks_row;
+    forEachGroup(element, [&](const ast::GroupPattern& inner) { is_local = is_local && isLocal(inner); });
+    return is_local;
+  }
+
+  /// EXISTS sees what its group binds.
+  bool isLocal(const ast::Expression& expression, bool is_bound) const {
+    return (!expression.pattern || (is_bound && isLocal(*expression.pattern, is_bound))) &&
+           std::all_of(expression.arguments.begin(), expression.arguments.end(),
+                       [&](const ast::Expression& argument) { return isLocal(argument, is_bound); });
+  }
+
+  ast::VariableIndex key_;
+};
+
+}  // namespace
+
+bool isLocalTo(ast::VariableIndex key, const ast::GroupPattern& body) {
+  return KeyBinding(key).isLocal(body);
 }
 
 }  // namespace cluxel::mapping

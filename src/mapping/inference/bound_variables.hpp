@@ -24,4 +24,8 @@ Variables boundIn(const sparql::ast::GroupPattern& group);
 /// The same of one element without what stands beside it; nothing for BIND.
 Variables boundIn(const sparql::ast::PatternElement& element);
 
+/// Whether a body can be evaluated for some values of a key apart: the solutions for one value do not follow from facts
+/// about others.
+bool isLocalTo(sparql::ast::VariableIndex key, const sparql::ast::GroupPattern& body);
+
 }  // namespace cluxel::mapping

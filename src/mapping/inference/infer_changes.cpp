@@ -4,107 +4,60 @@
 #include <array>
 #include <optional>
 #include <span>
-#include <unordered_map>
-#include <unordered_set>
 #include <utility>
 
-#include "mapping/inference/affected_keys.hpp"
+#include "mapping/inference/change_inference.hpp"
 #include "mapping/inference/infer_facts.hpp"
-#include "mapping/inference/inference_graphs.hpp"
-#include "mapping/inference/inference_properties.hpp"
-#include "mapping/inference/inference_record.hpp"
-#include "mapping/inference/read_test.hpp"
-#include "mapping/inference/rule_evaluation.hpp"
-#include "mapping/inference/temporary_quads.hpp"
 #include "rdf/map_iris.hpp"
-#include "rdf/ontology/staged_closure.hpp"
 #include "rdf/vocabulary.hpp"
 
 namespace cluxel::mapping {
 
-namespace {
-
-using rdf::FactState;
 using rdf::kNever;
-using rdf::LateFact;
 using rdf::Stage;
-using rdf::StagedFacts;
 using rdf::Triple;
 
-using Outputs = std::vector<RuleOutput>;
-
-struct ChangedQuad {
-  rdf::QuadIds quad;
-  bool is_added = false;
-};
+namespace {
 
 Triple factOf(const ChangedQuad& changed) {
   return {changed.quad.s, changed.quad.p, changed.quad.o};
 }
 
-class ChangeInference {
- public:
-  ChangeInference(rdf::WriteTransaction& transaction, const InferenceGraphs& graphs, InferenceRecord& record,
-                  const rdf::InferenceCheck& check)
-      : transaction_(transaction),
-        graphs_(graphs),
-        record_(record),
-        check_(check),
-        reader_(static_cast<const rdf::ReadTransaction&>(transaction)),
-        words_(reader_),
-        bounds_(reader_, limits()),
-        schema_(rdf::readStoredSchema(reader_, words_, allGraphs(), bounds_)),
-        facts_(reader_, words_, graphs.sources, graphs.inferred, std::move(record.late)),
-        closure_(reader_, words_, schema_, facts_, bounds_) {}
+}  // namespace
 
-  /// Each of these returns false when the change cannot be followed.
-  bool followStated(const rdf::QuadDifference& change, const std::vector<RuleShape>& rules);
-  bool followRule(Stage stage, const RuleShape& shape, Outputs& outputs);
-  void finish();
+ChangeInference::ChangeInference(rdf::WriteTransaction& transaction, const InferenceGraphs& graphs,
+                                 InferenceRecord& record, const rdf::InferenceCheck& check)
+    : transaction_(transaction),
+      graphs_(graphs),
+      record_(record),
+      check_(check),
+      reader_(static_cast<const rdf::ReadTransaction&>(transaction)),
+      words_(reader_),
+      bounds_(reader_, limits()),
+      schema_(rdf::readStoredSchema(reader_, words_, allGraphs(), bounds_)),
+      facts_(reader_, words_, graphs.sources, graphs.inferred, std::move(record.late)),
+      closure_(reader_, words_, schema_, facts_, bounds_) {}
 
-  std::vector<WholeRule> takeWhole() { return std::move(whole_); }  ///< rules that were evaluated for the whole map
-  std::vector<std::string> ignored() const { return ignoredAxioms(reader_, schema_); }
+rdf::ClosureLimits ChangeInference::limits() const {
+  rdf::ClosureLimits limits = rdf::ClosureLimits::of(reader_);
+  limits.check = check_;
+  return limits;
+}
 
- private:
-  rdf::ClosureLimits limits() const {
-    rdf::ClosureLimits limits = rdf::ClosureLimits::of(reader_);
-    limits.check = check_;
-    return limits;
-  }
-  std::vector<rdf::TermId> allGraphs() const {
-    std::vector<rdf::TermId> graphs = graphs_.sources;
-    graphs.push_back(graphs_.inferred);
-    return graphs;
-  }
-  void write() {
-    rdf::QuadWriter writer(transaction_);
-    facts_.write(writer);
-  }
-  std::optional<Outputs> solutions(Stage stage, const RuleShape& shape, const ReadTest& reads,
-                                   const std::optional<std::vector<rdf::TermId>>& keys);
-  std::vector<rdf::QuadIds> unseen(Stage stage, const ReadTest& reads) const;
-  std::vector<ChangedQuad> statedOrWithdrawn(const rdf::QuadDifference& change,
-                                             const InferenceProperties& properties) const;
-  bool isStatedBeside(std::span<const ChangedQuad> of_fact, rdf::PrefixLookup& stored) const;
-  std::vector<SeenChange> seenChanges(Stage stage, const ReadTest& reads) const;
-  bool isOtherBefore(Stage stage, const Triple& fact) const;
-  void setBases(Stage stage, const RuleShape& shape, std::vector<Triple> touched, const Outputs& outputs);
-  bool touchesDerivations(const rdf::QuadDifference& change) const;
-  bool feedsItself(Stage stage, const ReadTest& reads) const;
+std::vector<rdf::TermId> ChangeInference::allGraphs() const {
+  std::vector<rdf::TermId> graphs = graphs_.sources;
+  graphs.push_back(graphs_.inferred);
+  return graphs;
+}
 
-  rdf::WriteTransaction& transaction_;
-  const InferenceGraphs& graphs_;
-  InferenceRecord& record_;
-  const rdf::InferenceCheck& check_;
-  rdf::QuadReader reader_;
-  rdf::SchemaWords words_;
-  rdf::ClosureBounds bounds_;
-  rdf::Schema schema_;
-  StagedFacts facts_;
-  std::unordered_map<rdf::TermId, std::vector<SeenChange>> plain_;  ///< changes of properties that are only read
-  rdf::StagedClosure closure_;
-  std::vector<WholeRule> whole_;
-};
+std::vector<std::string> ChangeInference::ignored() const {
+  return ignoredAxioms(reader_, schema_);
+}
+
+void ChangeInference::write() {
+  rdf::QuadWriter writer(transaction_);
+  facts_.write(writer);
+}
 
 bool ChangeInference::followStated(const rdf::QuadDifference& change, const std::vector<RuleShape>& rules) {
   const InferenceProperties properties(reader_, words_, schema_, rules);
@@ -176,125 +129,12 @@ bool ChangeInference::touchesDerivations(const rdf::QuadDifference& change) cons
          });
 }
 
-/// What the store holds of facts that a rule of this stage reads but may not see.
-std::vector<rdf::QuadIds> ChangeInference::unseen(Stage stage, const ReadTest& reads) const {
-  std::vector<rdf::QuadIds> quads;
-  const auto add = [&](const Triple& fact) { quads.push_back({fact.s, fact.p, fact.o, graphs_.inferred}); };
-  for (const rdf::TermId property : reads.properties()) {
-    for (const LateFact& late : facts_.lateOf(property))
-      if (late.stage >= stage && reads.matches(late.fact) && !facts_.changed().contains(late.fact)) add(late.fact);
-    for (const Triple& fact : facts_.changedOf(property)) {
-      if (!reads.matches(fact)) continue;
-      const FactState& state = facts_.changed().at(fact);
-      if (state.is_written && state.now >= stage && state.now != kNever) add(fact);
-    }
-  }
-  return quads;
-}
-
-/// The facts that a rule of this stage reads and that it saw before the change and does not see now, or the other way
-/// round.
-std::vector<SeenChange> ChangeInference::seenChanges(Stage stage, const ReadTest& reads) const {
-  std::vector<SeenChange> changes;
-  for (const rdf::TermId property : reads.properties()) {
-    for (const Triple& fact : facts_.changedOf(property))
-      if (reads.matches(fact) && isOtherBefore(stage, fact))
-        changes.push_back({fact, facts_.changed().at(fact).now != kNever});
-    if (const auto plain = plain_.find(property); plain != plain_.end())
-      for (const SeenChange& one : plain->second)
-        if (reads.matches(one.fact)) changes.push_back(one);
-  }
-  return changes;
-}
-
-/// Whether the fact has become known before a stage, or has ceased to be.
-bool ChangeInference::isOtherBefore(Stage stage, const Triple& fact) const {
-  const auto changed = facts_.changed().find(fact);
-  return changed != facts_.changed().end() && (changed->second.before < stage) != (changed->second.now < stage);
-}
-
-/// The solutions of the rule for some keys, or all, from the facts of earlier stages.
-std::optional<Outputs> ChangeInference::solutions(Stage stage, const RuleShape& shape, const ReadTest& reads,
-                                                  const std::optional<std::vector<rdf::TermId>>& keys) {
-  std::optional<ValuesOf> values;
-  if (keys) {
-    if (keys->empty()) return Outputs{};
-    values = ValuesOf{shape.key, {}};
-    for (const rdf::TermId key : *keys) values->terms.push_back(reader_.termOf(key));
-  }
-  std::vector<rdf::QuadIds> hidden = unseen(stage, reads);
-  if (shape.is_plain && !hidden.empty()) {
-    const IsSeen is_seen = [&](const Triple& fact) { return facts_.stageOf(fact) < stage; };
-    return evaluateRule(transaction_, shape, check_, values, is_seen);
-  }
-  TemporaryQuads without(transaction_, {}, std::move(hidden));
-  Outputs outputs = evaluateRule(transaction_, shape, check_, values);
-  without.end();
-  return outputs;
-}
-
-bool ChangeInference::followRule(Stage stage, const RuleShape& shape, Outputs& outputs) {
-  const ReadTest reads(reader_, shape);
-  const std::vector<SeenChange> relevant = seenChanges(stage, reads);
-  std::vector<Triple> touched;
-  if (!relevant.empty()) {
-    write();
-    std::optional<std::vector<rdf::TermId>> keys;
-    if (shape.following == RuleShape::Following::ByKey) {
-      AffectedKeys affected(transaction_, facts_, graphs_.inferred, shape, reads, check_);
-      keys = affected.of(relevant);
-      constexpr std::size_t kFewKeys = 1000;  // below, evaluating by key is never worse by much
-      if (keys && keys->size() > kFewKeys && keys->size() > outputs.size() / 2) keys.reset();
-    } else {
-      whole_.push_back({ruleFileName(shape.rule), shape.reason});
-    }
-    const std::optional<Outputs> now = solutions(stage, shape, reads, keys);
-    touched = replaceOutputs(outputs, keys, *now);
-  }
-  for (const RuleOutput& output : outputs)
-    if (isOtherBefore(stage, output.fact)) touched.push_back(output.fact);
-  if (touched.empty()) return true;
-  setBases(stage, shape, std::move(touched), outputs);
-  return !facts_.touchesSchema() && !feedsItself(stage, reads);
-}
-
-/// Decides for each fact that the rule derives, or has derived, whether it holds by the rule.
-void ChangeInference::setBases(Stage stage, const RuleShape& shape, std::vector<Triple> touched,
-                               const Outputs& outputs) {
-  std::sort(touched.begin(), touched.end());
-  touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
-  std::unordered_set<Triple, rdf::TripleHash> derived;
-  for (const RuleOutput& output : outputs)
-    if (std::binary_search(touched.begin(), touched.end(), output.fact)) derived.insert(output.fact);
-  std::vector<rdf::BaseChange> bases;
-  rdf::QuadWriter writer(transaction_);
-  const auto set = [&](const Triple& fact, bool is_base) {
-    const Stage base = facts_.stateOf(fact).base;
-    if (is_base && base > stage) bases.push_back({fact, stage});
-    if (!is_base && base == stage) bases.push_back({fact, kNever});
-  };
-  for (const Triple& fact : touched) {
-    const bool is_base = derived.contains(fact) && facts_.stageOf(fact) >= stage;
-    set(fact, is_base);
-    for (const Triple& part : derivationOf(reader_, writer, fact, shape.rule)) set(part, is_base);
-  }
-  writer.flush();
-  closure_.update(bases);
-}
-
-/// Whether the rule reads what has come to be at its own stage: then it would have to be run again.
-bool ChangeInference::feedsItself(Stage stage, const ReadTest& reads) const {
-  const auto feeds = [&](const Triple& fact) { return reads.matches(fact) && facts_.changed().at(fact).now == stage; };
-  return std::any_of(reads.properties().begin(), reads.properties().end(), [&](rdf::TermId property) {
-    const std::vector<Triple>& changed = facts_.changedOf(property);
-    return std::any_of(changed.begin(), changed.end(), feeds);
-  });
-}
-
 void ChangeInference::finish() {
   write();
   record_.late = facts_.lateNow();
 }
+
+namespace {
 
 /// Following a quad costs as much as inferring anew from some seven.
 bool isLarge(const rdf::WriteTransaction& transaction, const rdf::QuadDifference& change) {
@@ -327,7 +167,8 @@ std::optional<std::vector<WholeRule>> inferChanges(rdf::WriteTransaction& transa
   for (const NamedText& rule : rules) shapes.push_back(shapeOf(rule));
   if (!inference.followStated(*change, shapes)) return std::nullopt;
   for (std::size_t i = 0; i < shapes.size(); ++i)
-    if (!inference.followRule(static_cast<Stage>(i + 1), shapes[i], record->outputs[i])) return std::nullopt;
+    if (!inference.followRule(static_cast<Stage>(i + 1), shapes[i], record->outputs[i], record->rounds[i]))
+      return std::nullopt;
   inference.finish();
   noteIgnoredAxioms(inference.ignored(), sink);
   storeInferenceRecord(transaction, *record, rules);

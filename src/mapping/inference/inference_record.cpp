@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::string_view kKey = "inferred";
 /// Increase it when the program infers other facts, or stores the record in another form.
-constexpr std::uint32_t kVersion = 2;
+constexpr std::uint32_t kVersion = 3;
 
 /// What the record belongs to.
 struct Basis {
@@ -72,7 +72,8 @@ void storeInferenceRecord(rdf::WriteTransaction& transaction, const InferenceRec
   std::string bytes;
   append(bytes, basisOf(rules, sum));
   appendList(bytes, record.reason);
-  for (const std::vector<RuleOutput>& outputs : record.outputs) appendList(bytes, outputs);
+  appendList(bytes, record.rounds);
+  for (const Outputs& outputs : record.outputs) appendList(bytes, outputs);
   std::vector<StoredLate> late;
   for (const rdf::LateFact& fact : record.late)
     late.push_back({fact.fact, fact.stage << 1U | static_cast<std::uint32_t>(fact.is_base)});
@@ -89,8 +90,10 @@ std::optional<InferenceRecord> storedInferenceRecord(const rdf::ReadTransaction&
   std::string_view bytes = block->substr(sizeof basis);
   InferenceRecord record;
   const auto reason = takeList<char>(bytes);
-  if (!reason) return std::nullopt;
+  const auto rounds = takeList<std::uint32_t>(bytes);
+  if (!reason || !rounds || rounds->size() != rules.size()) return std::nullopt;
   record.reason.assign(reason->begin(), reason->end());
+  record.rounds = *rounds;
   for (std::size_t i = 0; i < rules.size(); ++i) {
     auto outputs = takeList<RuleOutput>(bytes);
     if (!outputs) return std::nullopt;

@@ -2,6 +2,7 @@
 // What an inference stores beside its facts, so that the next one can follow a change of the map.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,9 +13,15 @@
 
 namespace cluxel::mapping {
 
+/// A rule that reads what it derives is evaluated at most so many times: one that makes new things of its own things
+/// would never end.
+inline constexpr std::uint32_t kMaxRounds = 1000;
+
 struct InferenceRecord {
-  std::vector<std::vector<RuleOutput>> outputs;  ///< of each rule, sorted
-  std::vector<rdf::LateFact> late;               ///< sorted
+  std::vector<Outputs> outputs;  ///< of each rule, sorted
+  /// Of each rule: an inference from scratch evaluates it at most so many times more, because it reads what it derives.
+  std::vector<std::uint32_t> rounds;
+  std::vector<rdf::LateFact> late;  ///< sorted
   std::string reason;  ///< why a change cannot be followed: a rule and what is wrong with it; empty when it can
   std::vector<WholeRule> whole;  ///< of this inference; it is not stored
 };

@@ -25,6 +25,8 @@ struct RuleOutput {
   auto operator<=>(const RuleOutput&) const = default;
 };
 
+using Outputs = std::vector<RuleOutput>;
+
 sparql::QueryOptions ruleOptions(const NamedText& rule, const rdf::InferenceCheck& check = {});
 
 /// Tells of a triple of a row whether the rule may see it.

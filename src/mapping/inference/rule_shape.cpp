@@ -94,54 +94,6 @@ bool addLinks(const ast::Path& path, std::vector<Term>& links) {
                      [&](const ast::Path& part) { return addLinks(part, links); });
 }
 
-/// Whether a body can be evaluated for some values of its key apart: the solutions for one value must not follow from
-/// facts about others. OPTIONAL, MINUS and BIND see what stands before them in their group, and EXISTS what its group
-/// binds. So the key has to be bound there.
-class KeyBinding {
- public:
-  explicit KeyBinding(ast::VariableIndex key) : key_(key) {}
-
-  /// `is_bound`: what is around the group binds the key.
-  bool isLocal(const ast::GroupPattern& group, bool is_bound = false) const {
-    const bool is_bound_by_all = is_bound || boundIn(group).contains(key_);
-    bool is_local = true;
-    for (const ast::PatternElement& element : group.elements) {
-      const auto* filter = std::get_if<ast::Filter>(&element.value);
-      is_local =
-          is_local && (filter != nullptr ? isLocal(filter->condition, is_bound_by_all) : isLocal(element, is_bound));
-      is_bound = is_bound || boundIn(element).contains(key_);
-    }
-    return is_local;
-  }
-
- private:
-  bool mentions(const ast::Expression& expression) const {
-    return (expression.kind == ast::Expression::Kind::Variable && expression.variable == key_) ||
-           std::any_of(expression.arguments.begin(), expression.arguments.end(),
-                       [this](const ast::Expression& argument) { return mentions(argument); });
-  }
-
-  /// `is_bound`: what stands before the element binds the key.
-  bool isLocal(const ast::PatternElement& element, bool is_bound) const {
-    if (const auto* bind = std::get_if<ast::Bind>(&element.value))
-      return is_bound || !(bind->variable == key_ || mentions(bind->expression));
-    const bool asks_row = std::holds_alternative<ast::OptionalPattern>(element.value) ||
-                          std::holds_alternative<ast::MinusPattern>(element.value);
-    bool is_local = is_bound || !asks_row;
-    forEachGroup(element, [&](const ast::GroupPattern& inner) { is_local = is_local && isLocal(inner); });
-    return is_local;
-  }
-
-  /// EXISTS sees what its group binds.
-  bool isLocal(const ast::Expression& expression, bool is_bound) const {
-    return (!expression.pattern || (is_bound && isLocal(*expression.pattern, is_bound))) &&
-           std::all_of(expression.arguments.begin(), expression.arguments.end(),
-                       [&](const ast::Expression& argument) { return isLocal(argument, is_bound); });
-  }
-
-  ast::VariableIndex key_;
-};
-
 class ShapeWalk {
  public:
   explicit ShapeWalk(RuleShape& shape) : shape_(shape) {}
@@ -154,6 +106,9 @@ class ShapeWalk {
     const ast::GroupPattern* body = bodyOf();
     group(body != nullptr ? *body : shape_.query.select.where, body != nullptr ? Need::Always : Need::No);
     if (body != nullptr) mentionKey(*body);
+    shape_.is_monotone = shape_.following == RuleShape::Following::ByKey && !shape_.is_grouped &&
+                         std::none_of(shape_.reads.begin(), shape_.reads.end(),
+                                      [](const ReadPattern& read) { return read.need == Need::No; });
   }
 
  private:
@@ -218,14 +173,38 @@ class ShapeWalk {
     return true;
   }
 
-  /// Chooses the key of a rule that does not group, and tells the patterns with the key from others.
-  void mentionKey(const ast::GroupPattern& body) {
-    std::vector<ast::VariableIndex> subjects;
-    for (const ast::PatternElement& element : body.elements)
+  /// The variables of the triple patterns of a group itself, in order.
+  static std::vector<ast::VariableIndex> endsIn(const ast::GroupPattern& group) {
+    std::vector<ast::VariableIndex> ends;
+    for (const ast::PatternElement& element : group.elements)
       if (const auto* block = std::get_if<ast::TriplesBlock>(&element.value))
         for (const ast::TriplePattern& triple : block->triples)
           for (const ast::PatternTerm* end : {&triple.subject, &triple.object})
-            if (end->isVariable()) subjects.push_back(end->variable());
+            if (end->isVariable()) ends.push_back(end->variable());
+    return ends;
+  }
+
+  /// The variables that triple patterns hold in every branch of a UNION of the group.
+  static std::vector<ast::VariableIndex> endsInAllBranches(const ast::GroupPattern& group) {
+    std::vector<ast::VariableIndex> ends;
+    for (const ast::PatternElement& element : group.elements) {
+      const auto* either = std::get_if<ast::UnionPattern>(&element.value);
+      if (either == nullptr) continue;
+      for (const ast::VariableIndex end : endsIn(either->branches.front())) {
+        const auto holds = [end](const ast::GroupPattern& branch) {
+          const auto some = endsIn(branch);
+          return std::find(some.begin(), some.end(), end) != some.end();
+        };
+        if (std::all_of(either->branches.begin(), either->branches.end(), holds)) ends.push_back(end);
+      }
+    }
+    return ends;
+  }
+
+  /// Chooses the key of a rule that does not group, and tells the patterns with the key from others.
+  void mentionKey(const ast::GroupPattern& body) {
+    std::vector<ast::VariableIndex> subjects = endsIn(body);
+    if (subjects.empty()) subjects = endsInAllBranches(body);
     if (!shape_.is_grouped && !subjects.empty()) shape_.key = subjects.front();
     if (std::find(subjects.begin(), subjects.end(), shape_.key) == subjects.end())
       return asWhole("no triple pattern holds the variable of its solutions in every one of them");
@@ -236,7 +215,7 @@ class ShapeWalk {
       if (!read.has_key && (read.need == Need::No || !has_variable))
         asWhole("what it excludes or may lack is not about ?" + shape_.query.variables[shape_.key].name);
     }
-    if (!KeyBinding(shape_.key).isLocal(body))
+    if (!isLocalTo(shape_.key, body))
       asWhole("it has OPTIONAL, MINUS, BIND or EXISTS where ?" + shape_.query.variables[shape_.key].name +
               " is not bound yet");
     shape_.is_plain = shape_.is_plain && !shape_.is_grouped;

@@ -47,6 +47,8 @@ struct RuleShape {
   ast::VariableIndex key = 0;  ///< ByKey
   bool is_grouped = false;     ///< the patterns stand in a sub-select that groups by the key
   bool is_plain = false;       ///< only triple patterns, filters, BIND and VALUES: each row names its triples
+  bool is_monotone =
+      false;  ///< ByKey; with more facts no solution is lost: it neither negates, groups nor has OPTIONAL
   std::vector<ReadPattern> reads;
   std::vector<std::size_t> branches;  ///< how many each UNION has, of those in UnionBranch
 };

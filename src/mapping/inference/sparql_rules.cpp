@@ -3,6 +3,7 @@
 #include "mapping/inference/sparql_rules.hpp"
 
 #include <algorithm>
+#include <unordered_set>
 
 #include "cluxel/error.hpp"
 #include "mapping/facts/query_names.hpp"
@@ -77,26 +78,34 @@ class RuleRun {
   }
 
   void run(const NamedText& rule) {
-    constexpr int kMaxRounds = 1000;
     const RuleShape shape = shapeOf(rule);
     ++stage_;
-    for (int round = 0;; ++round) {
+    record_.rounds.push_back(0);
+    record_.outputs.emplace_back();
+    for (std::uint32_t round = 0;; ++round) {
       std::vector<RuleOutput> outputs = evaluateRule(transaction_, shape, check_);
       const std::vector<rdf::QuadIds> added = derive(shape, factsOf(outputs));
-      if (round == 0) record_.outputs.push_back(std::move(outputs));
+      record_.outputs.back() = std::move(outputs);
+      record_.rounds.back() = round;
       if (added.empty()) break;
       if (round + 1 == kMaxRounds)
         throw InputError({.file = rule.name}, "derives new facts without end",
                          "a rule may not make new objects out of objects that it made itself");
       if (!mayFeed(shape, added)) break;
-      doNotFollow(shape, shape.following == RuleShape::Following::Never ? shape.reason : "it reads what it derives");
+      if (!shape.is_monotone)
+        doNotFollow(shape, shape.following == RuleShape::Following::Never ? shape.reason : "it reads what it derives");
     }
+    for (const rdf::Triple& fact : closed_) record_.late.push_back({fact, stage_, false});
+    closed_.clear();
     if (shape.following == RuleShape::Following::Never) doNotFollow(shape, shape.reason);
     if (shape.following == RuleShape::Following::AsWhole) addWhole(shape, shape.reason);
   }
 
   InferenceRecord finish() {
-    if (!record_.reason.empty()) record_.outputs.assign(record_.outputs.size(), {}), record_.late.clear();
+    if (!record_.reason.empty()) {
+      record_.outputs.assign(record_.outputs.size(), {});
+      record_.late.clear();
+    }
     std::sort(record_.late.begin(), record_.late.end());
     return std::move(record_);
   }
@@ -128,10 +137,11 @@ class RuleRun {
     const auto add = [&](const rdf::Triple& fact) {
       added.push_back({fact.s, fact.p, fact.o, inferred_});
       writer.add(added.back());
+      record_.late.push_back({fact, stage_, true});
     };
     std::vector<rdf::Triple> fresh;
     for (const rdf::Triple& fact : facts)
-      if (!isKnown(reader_, fact, history_)) fresh.push_back(fact);
+      if (closed_.erase(fact) > 0 || !isKnown(reader_, fact, history_)) fresh.push_back(fact);
     constexpr std::size_t kBytesOfDerivedFact = 2000;  // six quads with their terms
     if (check_) check_(fresh.size() * kBytesOfDerivedFact);
     for (const rdf::Triple& fact : fresh) {
@@ -141,17 +151,13 @@ class RuleRun {
     }
     writer.flush();
     if (added.empty()) return added;
-    for (const rdf::QuadIds& quad : added) noteLate(shape, quad, true);
     for (const rdf::QuadIds& quad : extendClosure(transaction_, added, check_).extension) {
-      noteLate(shape, quad, false);
+      closed_.insert({quad.s, quad.p, quad.o});
       added.push_back(quad);
     }
+    for (const rdf::QuadIds& quad : added)
+      if (words_.isAxiom(quad.p, quad.o)) doNotFollow(shape, "it derives axioms");
     return added;
-  }
-
-  void noteLate(const RuleShape& shape, const rdf::QuadIds& quad, bool is_base) {
-    record_.late.push_back({{quad.s, quad.p, quad.o}, stage_, is_base});
-    if (words_.isAxiom(quad.p, quad.o)) doNotFollow(shape, "it derives axioms");
   }
 
   rdf::WriteTransaction& transaction_;
@@ -160,6 +166,8 @@ class RuleRun {
   rdf::SchemaWords words_;
   rdf::TermId inferred_ = rdf::kNoTerm, history_ = rdf::kNoGraph;
   rdf::Stage stage_ = 0;
+  /// Facts of this stage by the closure. A later round of the rule may derive them, too.
+  std::unordered_set<rdf::Triple, rdf::TripleHash> closed_;
   InferenceRecord record_;
 };
 

@@ -68,13 +68,15 @@ Stage StagedClosure::bestDerivation(const Triple& fact) const {
 /// The facts whose stage may rise, when it does for those in `open`. States are left as they are.
 std::vector<Triple> StagedClosure::takeAway(std::vector<Triple> open) {
   std::unordered_set<Triple, TripleHash> taken(open.begin(), open.end());
+  weakened_.insert(weakened_.end(), open.begin(), open.end());
   for (std::size_t i = 0; i < open.size(); ++i) {
     const Triple fact = open[i];
     forEachConsequence(fact, facts_.stageOf(fact), [&](const Triple& next, Stage stage) {
       const FactState state = facts_.stateOf(next);
-      // One that is known earlier, or needs no closure, does not rest on this step.
-      if (state.now != stage || state.base <= stage || !taken.insert(next).second) return;
-      open.push_back(next);
+      if (state.now != stage) return;  // it is known earlier
+      if (state.base > stage && !taken.insert(next).second) return;
+      weakened_.push_back(next);
+      if (state.base > stage) open.push_back(next);  // else it needs no closure
     });
   }
   return open;

@@ -28,6 +28,9 @@ class StagedClosure {
   StagedClosure(const QuadReader& reader, const SchemaWords& words, const Schema& schema, StagedFacts& facts,
                 ClosureBounds& bounds);
   void update(std::span<const BaseChange> changes);
+  /// The facts that have lost a derivation of their stage in some update, in this order: gone, of a later stage, or
+  /// standing on another derivation. Some may be named several times.
+  const std::vector<Triple>& weakened() const { return weakened_; }
 
  private:
   struct Reached {
@@ -48,7 +51,8 @@ class StagedClosure {
   StagedFacts& facts_;
   ClosureBounds& bounds_;
   std::map<TermId, std::vector<Implied>> implying_;  ///< Implied::property is the one that implies the key
-  std::vector<Reached> open_;                        ///< a heap, the least stage first
+  std::vector<Triple> weakened_;
+  std::vector<Reached> open_;  ///< a heap, the least stage first
 };
 
 /// The schema of a closed store, read by prefix.

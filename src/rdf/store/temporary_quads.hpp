@@ -7,29 +7,29 @@
 
 #include "rdf/store/quad_store.hpp"
 
-namespace cluxel::mapping {
+namespace cluxel::rdf {
 
 /// Without end() the store stays changed: after an error its transaction is dropped.
 class TemporaryQuads {
  public:
   /// The store must not have the quads in `with`, and must have those in `without`.
-  TemporaryQuads(rdf::WriteTransaction& transaction, std::vector<rdf::QuadIds> with, std::vector<rdf::QuadIds> without)
+  TemporaryQuads(WriteTransaction& transaction, std::vector<QuadIds> with, std::vector<QuadIds> without)
       : transaction_(transaction), with_(std::move(with)), without_(std::move(without)) {
     exchange(with_, without_);
   }
   void end() { exchange(without_, with_); }
 
  private:
-  void exchange(const std::vector<rdf::QuadIds>& in, const std::vector<rdf::QuadIds>& out) {
+  void exchange(const std::vector<QuadIds>& in, const std::vector<QuadIds>& out) {
     if (in.empty() && out.empty()) return;
-    rdf::QuadWriter writer(transaction_);
-    for (const rdf::QuadIds& quad : in) writer.add(quad);
-    for (const rdf::QuadIds& quad : out) writer.remove(quad);
+    QuadWriter writer(transaction_);
+    for (const QuadIds& quad : in) writer.add(quad);
+    for (const QuadIds& quad : out) writer.remove(quad);
     writer.flush();
   }
 
-  rdf::WriteTransaction& transaction_;
-  std::vector<rdf::QuadIds> with_, without_;
+  WriteTransaction& transaction_;
+  std::vector<QuadIds> with_, without_;
 };
 
-}  // namespace cluxel::mapping
+}  // namespace cluxel::rdf
