@@ -12,6 +12,8 @@ std::vector<std::string> ReadingNotes::add(const ScanReading& reading) {
     if (scans_with_no_return_++ == 0) first_with_no_return_ = reading.source;
     no_return_count_ += reading.no_return_count;
   }
+  if (reading.withheld_count > 0 && withheld_count_ == 0) first_with_withheld_ = reading.source;
+  withheld_count_ += reading.withheld_count;
   for (const std::string& field : reading.ignored_fields) {
     if (ignored_fields_.empty()) first_with_ignored_ = reading.source;
     if (std::find(ignored_fields_.begin(), ignored_fields_.end(), field) == ignored_fields_.end())
@@ -41,6 +43,9 @@ std::vector<std::string> ReadingNotes::totals() const {
     notes.push_back(std::to_string(no_return_count_) + " records without a finite position (no return) skipped in " +
                     std::to_string(scans_with_no_return_) + " of " + std::to_string(scans_) + " scans (" +
                     first_with_no_return_ + (scans_with_no_return_ > 1 ? ", ...)" : ")"));
+  if (withheld_count_ > 0)
+    notes.push_back(std::to_string(withheld_count_) +
+                    " points skipped that files mark as withheld, which means deleted (" + first_with_withheld_ + ')');
   if (!ignored_fields_.empty()) {
     std::string names;
     for (const std::string& field : ignored_fields_) names += (names.empty() ? "" : ", ") + field;

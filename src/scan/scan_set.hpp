@@ -55,6 +55,7 @@ struct FaultyScan {
 struct ScanReading {
   std::string source;
   std::size_t no_return_count = 0;          ///< records without a finite position, which were skipped
+  std::size_t withheld_count = 0;           ///< points that the file marks as deleted, which were skipped
   std::vector<std::string> ignored_fields;  ///< fields whose meaning another field has already
   std::vector<FrameDoubt> doubts;
 };
@@ -119,8 +120,8 @@ class ReadingNotes {
  private:
   InputRemedies remedies_;
   std::vector<FrameDoubt> doubts_;
-  std::size_t scans_ = 0, scans_with_no_return_ = 0, no_return_count_ = 0;
-  std::string first_with_no_return_, first_with_ignored_;
+  std::size_t scans_ = 0, scans_with_no_return_ = 0, no_return_count_ = 0, withheld_count_ = 0;
+  std::string first_with_no_return_, first_with_ignored_, first_with_withheld_;
   std::vector<std::string> ignored_fields_;
 };
 

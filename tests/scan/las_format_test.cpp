@@ -67,6 +67,34 @@ TEST(LasFormat, ReadsEveryPointFormatOfEveryVersion) {
     }
 }
 
+TEST(LasFormat, SkipsWithheldPoints) {
+  for (const unsigned format : {0U, 3U, 6U, 10U}) {
+    std::string bytes = lasFile(4, format, {kPoints[0], kPoints[1], {2000, 0, 0, 1, 6}});
+    const std::size_t second = 375 + kRecordBytes[format];
+    const std::uint8_t flags = format >= 6 ? 0x04 : 0x80 | 5;
+    put(bytes, second + 15, flags);
+    const ParsedScan scan = parseLas(bytes, "a.las");
+    EXPECT_THAT(scan.points.x, ElementsAre(101.F, 102.F)) << format;
+    EXPECT_THAT(scan.points.label, ElementsAre(2U, 6U));
+    EXPECT_THAT(scan.no_return, ElementsAre(1U));
+    EXPECT_EQ(scan.withheld_count, 1U);
+  }
+}
+
+TEST(LasFormat, KeepsSyntheticPointsKeyPointsAndOverlaps) {
+  for (const auto& [format, flags] : {std::pair(0U, 0x60U | 2U), std::pair(6U, 0x0BU)}) {
+    std::string bytes = lasFile(4, format, {kPoints[0]});
+    put(bytes, 375 + 15, static_cast<std::uint8_t>(flags));
+    EXPECT_EQ(parseLas(bytes, "a.las").points.size(), 1U) << format;
+  }
+}
+
+TEST(LasFormat, RefusesAFileOfWithheldPointsAlone) {
+  std::string bytes = lasFile(2, 0, {kPoints[0]});
+  put<std::uint8_t>(bytes, 227 + 15, 0x82);
+  EXPECT_THAT(refusalOf([&] { parseLas(bytes, "a.las"); }), HasSubstr("marks all of its 1 points as withheld"));
+}
+
 TEST(LasFormat, LeavesOutIntensityAndLabelsThatWereNotRecorded) {
   const ParsedScan scan = parseLas(lasFile(2, 0, {{1, 2, 3, 0, 0}}), "a.las");
   EXPECT_TRUE(scan.points.intensity.empty());

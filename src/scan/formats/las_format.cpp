@@ -113,6 +113,11 @@ std::uint32_t classificationAt(std::string_view bytes, std::size_t record, const
   return numberAt<std::uint8_t>(bytes, record + 15) & 0x1FU;
 }
 
+/// Whether the point is marked as deleted.
+bool isWithheld(std::string_view bytes, std::size_t record, const LasHeader& header) {
+  return (numberAt<std::uint8_t>(bytes, record + 15) & (header.point_format >= 6 ? 0x04U : 0x80U)) != 0;
+}
+
 /// LAS writes 0 where nothing was recorded.
 template <typename T>
 void dropIfAllZero(std::vector<T>& values) {
@@ -128,6 +133,10 @@ ParsedScan parseLas(std::string_view bytes, const std::string& file) {
   points.reserve(header.point_count);
   for (std::uint64_t i = 0; i < header.point_count; ++i) {
     const std::size_t at = header.data_offset + i * header.record_bytes;
+    if (isWithheld(bytes, at, header)) {
+      points.withhold();
+      continue;
+    }
     const Eigen::Vector3d raw(numberAt<std::int32_t>(bytes, at), numberAt<std::int32_t>(bytes, at + 4),
                               numberAt<std::int32_t>(bytes, at + 8));
     const Eigen::Vector3d p = raw.cwiseProduct(header.scale) + header.offset;

@@ -20,8 +20,10 @@ struct ParsedScan {
   /// To be added to every point and to the origin of its ray, in double [m].
   Eigen::Vector3d local_origin = Eigen::Vector3d::Zero();
   std::optional<Eigen::Isometry3d> viewpoint;  ///< the sensor's pose, when the file holds one
-  std::vector<std::size_t> no_return;          ///< records without a finite position, ascending; they are not points
-  std::vector<std::string> ignored_fields;     ///< fields whose meaning another field has already
+  /// Records that are no points, ascending: without a finite position, or withheld.
+  std::vector<std::size_t> no_return;
+  std::size_t withheld_count = 0;           ///< of these, records that the file marks as deleted
+  std::vector<std::string> ignored_fields;  ///< fields whose meaning another field has already
 };
 
 /// A float beyond this is coarser than half a millimetre, so points are stored relative to a local origin.
@@ -62,6 +64,11 @@ class PointCollector {
     scan_->points.z.push_back(static_cast<float>(z - origin.z()));
     return PointUse::Added;
   }
+  /// A record that the file marks as deleted.
+  void withhold() {
+    scan_->no_return.push_back(record_++);
+    ++scan_->withheld_count;
+  }
   /// The origin of the ray of the last added point; false when it is not finite.
   bool addOrigin(const Eigen::Vector3d& origin) {
     scan_->points.origin.push_back((origin - scan_->local_origin).cast<float>());
@@ -92,6 +99,9 @@ class PointCollector {
 inline void requirePoints(const ParsedScan& scan, const std::string& file) {
   if (!scan.points.empty()) return;
   if (scan.no_return.empty()) refuseFile(file, "holds no points", "an empty scan cannot be mapped: leave it out");
+  if (scan.withheld_count == scan.no_return.size())
+    refuseFile(file, "marks all of its " + std::to_string(scan.withheld_count) + " points as withheld",
+               "such points are deleted: leave the file out, or export it again");
   refuseFile(file, "none of its " + std::to_string(scan.no_return.size()) + " points has a finite position",
              "all are NaN or infinite: leave the file out, or export it again");
 }
