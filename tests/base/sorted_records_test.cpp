@@ -93,7 +93,7 @@ TEST_F(SortedInFolder, TellThatTheDiskIsFull) {
     SortedRecords records(1000);
     const std::string failure = failureOf([&] { addMany(records); });
     const bool names_folder =
-        failure.starts_with(folder_.string() + ": a temporary file for sorting cannot be written");
+        failure.starts_with(folder_.string() + ": a temporary file cannot be written");
     ::_exit(names_folder && failure.find("set TMPDIR") != std::string::npos ? 0 : 1);
   }
   int status = 0;

@@ -3,18 +3,10 @@
 // how many follow.
 #include "base/sorting/sorted_records.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <cstring>
 #include <optional>
-#include <system_error>
-
-#include "base/file_bytes.hpp"
-#include "base/sorting/nameless_file.hpp"
-#include "cluxel/error.hpp"
 
 namespace cluxel {
 
@@ -22,12 +14,6 @@ namespace {
 
 using RecordHead = std::array<std::uint32_t, 2>;
 constexpr std::size_t kHeadBytes = sizeof(RecordHead);
-
-[[noreturn]] void failSorting(const std::string& what, int code) {
-  throw Error(ErrorKind::StoreUnavailable,
-              temporaryFolderPath().string() + ": a temporary file for sorting cannot be " + what + " (" +
-                  std::generic_category().message(code) + "); make room there, or set TMPDIR to a folder with more");
-}
 
 std::size_t sharedBytes(std::string_view a, std::string_view b) {
   const std::size_t most = std::min(a.size(), b.size());
@@ -40,7 +26,7 @@ std::size_t sharedBytes(std::string_view a, std::string_view b) {
 /// Reads one run from the file, a buffer at a time.
 class SortedRecords::RunReader {
  public:
-  RunReader(int file, const Run& run, std::size_t buffer_bytes)
+  RunReader(const TemporaryBytes& file, const Run& run, std::size_t buffer_bytes)
       : file_(file), at_(run.begin), end_(run.end), buffer_bytes_(buffer_bytes) {}
 
   /// False at the end.
@@ -69,24 +55,16 @@ class SortedRecords::RunReader {
     place_ = 0;
     const std::size_t known = buffer_.size();
     buffer_.resize(known + std::min<std::uint64_t>(end_ - at_, std::max(count, buffer_bytes_) - known));
-    for (std::size_t done = known; done < buffer_.size();) {
-      const ssize_t part = ::pread(file_, buffer_.data() + done, buffer_.size() - done, static_cast<off_t>(at_));
-      if (part < 0 && errno == EINTR) continue;
-      if (part <= 0) failSorting("read", part < 0 ? errno : EIO);
-      done += static_cast<std::size_t>(part);
-      at_ += static_cast<std::uint64_t>(part);
-    }
+    const std::size_t more = buffer_.size() - known;
+    file_.read(at_, buffer_.data() + known, more);
+    at_ += more;
   }
 
-  int file_;
+  const TemporaryBytes& file_;
   std::uint64_t at_, end_;
   std::size_t buffer_bytes_, place_ = 0;
   std::string buffer_, record_;
 };
-
-SortedRecords::~SortedRecords() {
-  if (file_ >= 0) ::close(file_);
-}
 
 void SortedRecords::add(std::string_view record) {
   const std::size_t held = bytes_.size() + places_.size() * sizeof(Place);
@@ -114,10 +92,8 @@ void SortedRecords::sortMemory() {
 
 void SortedRecords::writeRun() {
   constexpr std::size_t kWriteBytes = std::size_t{1} << 18U;
-  if (file_ < 0) file_ = openNamelessFile(temporaryFolderPath());
-  if (file_ < 0) failSorting("made", errno);
   sortMemory();
-  const std::uint64_t begin = file_bytes_;
+  const std::uint64_t begin = file_.size();
   std::string out;
   std::string_view before;
   for (const Place& place : places_) {
@@ -126,22 +102,12 @@ void SortedRecords::writeRun() {
     const RecordHead head{static_cast<std::uint32_t>(shared), static_cast<std::uint32_t>(record.size() - shared)};
     out.append(reinterpret_cast<const char*>(head.data()), kHeadBytes).append(record.substr(shared));
     before = record;
-    if (out.size() >= kWriteBytes) writeAll(std::exchange(out, {}));
+    if (out.size() >= kWriteBytes) file_.append(std::exchange(out, {}));
   }
-  writeAll(out);
-  runs_.push_back({begin, file_bytes_});
+  file_.append(out);
+  runs_.push_back({begin, file_.size()});
   places_.clear();
   bytes_.clear();
-}
-
-void SortedRecords::writeAll(std::string_view bytes) {
-  while (!bytes.empty()) {
-    const ssize_t count = ::pwrite(file_, bytes.data(), bytes.size(), static_cast<off_t>(file_bytes_));
-    if (count < 0 && errno == EINTR) continue;
-    if (count < 0) failSorting("written", errno);
-    bytes.remove_prefix(static_cast<std::size_t>(count));
-    file_bytes_ += static_cast<std::uint64_t>(count);
-  }
 }
 
 void SortedRecords::mergeRuns(const std::function<void(std::string_view)>& take) {
@@ -173,8 +139,7 @@ void SortedRecords::forget() {
   runs_.clear();
   places_.clear();
   bytes_.clear();
-  file_bytes_ = 0;
-  if (file_ >= 0 && ::ftruncate(file_, 0) != 0) failSorting("emptied", errno);
+  file_.clear();
 }
 
 }  // namespace cluxel

@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "base/sorting/temporary_bytes.hpp"
+
 namespace cluxel {
 
 /// Byte strings, given back in bytewise order, each once. What exceeds a limit of memory goes as sorted runs to a file
@@ -22,7 +24,6 @@ class SortedRecords {
   explicit SortedRecords(std::size_t bytes_in_memory = kUsualBytes) : limit_(bytes_in_memory) {}
   SortedRecords(const SortedRecords&) = delete;
   SortedRecords& operator=(const SortedRecords&) = delete;
-  ~SortedRecords();
 
   /// Throws Error (StoreUnavailable) when the folder for temporary files cannot be used or is full.
   void add(std::string_view record);
@@ -43,7 +44,6 @@ class SortedRecords {
   std::string_view viewOf(const Place& place) const { return {bytes_.data() + place.begin, place.size}; }
   void sortMemory();
   void writeRun();
-  void writeAll(std::string_view bytes);
   void mergeRuns(const std::function<void(std::string_view)>& take);
   void forget();
 
@@ -51,8 +51,7 @@ class SortedRecords {
   std::string bytes_;
   std::vector<Place> places_;
   std::vector<Run> runs_;
-  std::uint64_t file_bytes_ = 0;
-  int file_ = -1;
+  TemporaryBytes file_;
 };
 
 }  // namespace cluxel
