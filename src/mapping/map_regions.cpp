@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tiles are halved along their longer side until few enough cluxels lie in each part.
+// A region holds the stored outputs of its tiles, and of those of its objects.
 #include "mapping/map_regions.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <utility>
 
 #include "mapping/build/tile_stages.hpp"
 #include "mapping/damaged_map.hpp"
 #include "mapping/facts/object_geometry.hpp"
 #include "mapping/layers/stored_layers.hpp"
+#include "mapping/tile_regions.hpp"
 #include "rdf/vocabulary.hpp"
 
 namespace cluxel::mapping {
@@ -17,34 +19,6 @@ namespace {
 
 using perception::TileKey;
 using perception::TileSet;
-
-struct CountedTile {
-  TileKey key;
-  std::size_t cluxels = 0;
-};
-using TileIterator = std::vector<CountedTile>::iterator;
-
-void addRegions(TileIterator first, TileIterator last, std::size_t max_cluxels, std::vector<TileSet>& regions) {
-  std::size_t cluxels = 0;
-  Eigen::AlignedBox2i box;
-  for (auto tile = first; tile != last; ++tile) {
-    cluxels += tile->cluxels;
-    box.extend(Eigen::Vector2i(tile->key.x, tile->key.y));
-  }
-  if (last - first <= 1 || cluxels <= max_cluxels) {
-    TileSet& region = regions.emplace_back();
-    for (auto tile = first; tile != last; ++tile) region.insert(tile->key);
-    return;
-  }
-  const bool along_x = box.sizes().x() >= box.sizes().y();
-  const auto order = [along_x](const CountedTile& a, const CountedTile& b) {
-    return along_x ? a.key < b.key : std::pair(a.key.y, a.key.x) < std::pair(b.key.y, b.key.x);
-  };
-  std::sort(first, last, order);
-  const auto middle = first + (last - first) / 2;
-  addRegions(first, middle, max_cluxels, regions);
-  addRegions(middle, last, max_cluxels, regions);
-}
 
 [[noreturn]] void failUnfit() {
   refuseDamaged("stored tiles and what was decided about them do not belong together");
@@ -80,7 +54,7 @@ MapRegions::MapRegions(const MapReader& map, std::size_t max_cluxels) : map_(map
     first += static_cast<std::uint32_t>(layer.size());
     tiles.push_back({layer.key, layer.size()});
   });
-  if (!tiles.empty()) addRegions(tiles.begin(), tiles.end(), max_cluxels, regions_);
+  regions_ = regionsOf(std::move(tiles), max_cluxels);
   const std::string ground = rdf::vocabulary::clx("Ground");
   forEachRecord(map.transaction(), [&](const ContentHash&, const ObjectRecord& record) {
     const auto number = static_cast<std::uint32_t>(is_ground_.size());

@@ -8,6 +8,8 @@
 #include <cstring>
 #include <string>
 
+#include "mapping/answered_clouds.hpp"
+#include "mapping/layers/stored_layers.hpp"
 #include "rdf/ontology/ontology.hpp"
 
 namespace cluxel::tasks {
@@ -27,10 +29,10 @@ PointColour colourOf(std::string_view text) {
 std::vector<PointColour> coloursOf(const mapping::MapReader& map) {
   const rdf::OntologyView ontology = ontologyViewOf(map.quads());
   std::vector<PointColour> colours;
-  for (const rules::SemanticObject& object : map.objects()) {
-    const rdf::OntologyClass* known = ontology.find(object.class_iri);
+  mapping::forEachRecord(map.transaction(), [&](const ContentHash& /*id*/, const mapping::ObjectRecord& record) {
+    const rdf::OntologyClass* known = ontology.find(record.class_iri);
     colours.push_back(known == nullptr ? kGrey : colourOf(known->color));
-  }
+  });
   return colours;
 }
 
@@ -52,20 +54,19 @@ void writeColouredPly(const mapping::MapReader& map, const ColourOfPoint& colour
   std::uint64_t total = 0;
   for (const mapping::Cloud& cloud : map.clouds()) total += cloud.point_count;
   out(headerFor(total));
-  for (const mapping::Cloud& cloud : map.clouds()) {
-    const scan::ScanPoints points = map.pointsOf(cloud.id);
-    const mapping::PointAnswers answers = map.answersFor(cloud);
-    std::string bytes;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      const Eigen::Vector3d p = scan::toMap(cloud.T_map_sensor, {points.x[i], points.y[i], points.z[i]});
-      append(bytes, p.x()), append(bytes, p.y()), append(bytes, p.z());
-      const bool has_object = answers.object[i] != mapping::kNoObjectOfPoint;
-      append(bytes, colourOfPoint(answers.cluxel[i], answers.object[i]));
-      append(bytes, static_cast<float>(answers.label[i]));
-      append(bytes, has_object ? static_cast<float>(answers.object[i]) : -1.0F);
-    }
-    out(bytes);
-  }
+  forEachAnsweredCloud(
+      map, [&](const mapping::Cloud& cloud, const scan::ScanPoints& points, const mapping::PointAnswers& answers) {
+        std::string bytes;
+        for (std::size_t i = 0; i < points.size(); ++i) {
+          const Eigen::Vector3d p = scan::toMap(cloud.T_map_sensor, {points.x[i], points.y[i], points.z[i]});
+          append(bytes, p.x()), append(bytes, p.y()), append(bytes, p.z());
+          const bool has_object = answers.object[i] != mapping::kNoObjectOfPoint;
+          append(bytes, colourOfPoint(answers.cluxel[i], answers.object[i]));
+          append(bytes, static_cast<float>(answers.label[i]));
+          append(bytes, has_object ? static_cast<float>(answers.object[i]) : -1.0F);
+        }
+        out(bytes);
+      });
 }
 
 void writeColouredPly(const mapping::MapReader& map, const ByteSink& out) {

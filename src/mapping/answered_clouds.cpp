@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: Apache-2.0
+// Clouds are not in an order of places, and each lies in several regions. So each region answers for its points of all
+// clouds, and a cloud's answers are put together from these pieces.
+#include "mapping/answered_clouds.hpp"
+
+#include <algorithm>
+#include <map>
+#include <string>
+#include <unordered_map>
+
+#include "base/free_memory.hpp"
+#include "base/sorting/temporary_bytes.hpp"
+#include "mapping/build/tile_stages.hpp"
+#include "mapping/damaged_map.hpp"
+#include "mapping/layers/stored_layers.hpp"
+#include "mapping/map_tables.hpp"
+#include "mapping/tile_regions.hpp"
+#include "perception/crf/labelling.hpp"
+
+namespace cluxel::mapping {
+
+namespace {
+
+using perception::TileKey;
+using perception::TileSet;
+
+/// Answers for some points of a cloud. The arrays are parallel.
+struct AnswerPiece {
+  std::vector<std::uint32_t> point;  ///< number in the cloud, ascending
+  PointAnswers answers;
+
+  void add(std::size_t number, std::uint32_t cluxel, std::uint8_t label, std::uint32_t object) {
+    point.push_back(static_cast<std::uint32_t>(number));
+    answers.cluxel.push_back(cluxel);
+    answers.label.push_back(label);
+    answers.object.push_back(object);
+  }
+};
+
+/// What the map says about the cluxels of one tile.
+struct AnsweringTile {
+  perception::RepresentativeFinder finder;
+  const perception::CluxelTile* cluxels;
+  perception::LabelTile labels;
+  std::vector<std::uint32_t> object;  ///< by cluxel: number in MapReader::objects(), or kNoObjectOfPoint
+  std::uint32_t first_cluxel;         ///< in MapReader::scene()
+};
+
+class RegionAnswers {
+ public:
+  RegionAnswers(const MapReader& map, TileStages& stages, const TileSet& tiles,
+                const std::map<TileKey, std::uint32_t>& first_cluxel) {
+    stages.dropPoints();
+    stages.loadPoints(map.transaction(), tiles);
+    for (const TileKey& tile : tiles) {
+      const std::string_view labels = requiredBlock(map.transaction(), tables::kLabels, tile);
+      const auto cluxels = stages.cluxels().find(tile);
+      if (cluxels == stages.cluxels().end()) refuseIncompleteTile();
+      AnsweringTile answering{{stages.points().at(tile), map.model().perception.thin},
+                              &cluxels->second,
+                              ofTile(tile, perception::labelTileFromBytes(labels)),
+                              objectsIn(map, tile),
+                              first_cluxel.at(tile)};
+      const std::size_t count = cluxels->second.size();
+      if (answering.labels.label.size() != count || answering.object.size() != count) failUnfit();
+      tiles_.emplace(tile, std::move(answering));
+    }
+  }
+
+  AnswerPiece answersFor(const Cloud& cloud, const scan::ScanPoints& points) const {
+    AnswerPiece piece;
+    auto tile = tiles_.end();
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const Eigen::Vector3d p_map = scan::toMap(cloud.T_map_sensor, {points.x[i], points.y[i], points.z[i]});
+      const TileKey key = perception::tileOf(p_map);
+      if (tile == tiles_.end() || tile->first != key) tile = tiles_.find(key);
+      if (tile == tiles_.end()) continue;
+      const AnsweringTile& here = tile->second;
+      const std::uint32_t kept = here.finder.find(perception::localPoint(key, p_map));
+      if (kept >= here.cluxels->point_cluxel.size()) failUnfit();
+      const std::uint32_t cluxel = here.cluxels->point_cluxel[kept];
+      piece.add(i, here.first_cluxel + cluxel, here.labels.label.at(cluxel), here.object.at(cluxel));
+    }
+    return piece;
+  }
+
+ private:
+  [[noreturn]] static void failUnfit() { refuseDamaged("a stored tile does not fit its points"); }
+
+  static std::vector<std::uint32_t> objectsIn(const MapReader& map, const TileKey& tile) {
+    const auto layer = storedLayer(map.transaction(), tile);
+    if (!layer) refuseIncompleteTile();
+    const std::vector<ContentHash>& ids = map.objectIds();
+    std::vector<std::uint32_t> object_of_share;
+    for (const TileLayer::Share& share : layer->shares) {
+      const auto at = std::lower_bound(ids.begin(), ids.end(), share.object);
+      if (at == ids.end() || *at != share.object) refuseDamaged("a tile names an object that is not there");
+      object_of_share.push_back(static_cast<std::uint32_t>(at - ids.begin()));
+    }
+    std::vector<std::uint32_t> objects;
+    for (const std::uint32_t share : layer->share_of_cluxel)
+      objects.push_back(share == kNoShare ? kNoObjectOfPoint : object_of_share.at(share));
+    return objects;
+  }
+
+  std::map<TileKey, AnsweringTile> tiles_;
+};
+
+/// Keeps the pieces of all clouds in a file.
+class AnswerPieces {
+ public:
+  void add(const Cloud& cloud, const AnswerPiece& piece) {
+    const PointAnswers& answers = piece.answers;
+    std::string bytes;
+    append(bytes, piece.point), append(bytes, answers.cluxel), append(bytes, answers.object);
+    append(bytes, answers.label);
+    places_[cloud.id].push_back({file_.append(bytes), piece.point.size()});
+  }
+
+  /// The pieces must have all points of the cloud, each once.
+  PointAnswers join(const Cloud& cloud, std::size_t count) const {
+    PointAnswers all{std::vector<std::uint32_t>(count), std::vector<std::uint8_t>(count),
+                     std::vector<std::uint32_t>(count)};
+    std::size_t joined = 0;
+    if (const auto places = places_.find(cloud.id); places != places_.end())
+      for (const Place& place : places->second) {
+        const AnswerPiece piece = read(place);
+        for (std::size_t i = 0; i < piece.point.size(); ++i) {
+          all.cluxel.at(piece.point[i]) = piece.answers.cluxel[i];
+          all.label[piece.point[i]] = piece.answers.label[i];
+          all.object[piece.point[i]] = piece.answers.object[i];
+        }
+        joined += piece.point.size();
+      }
+    if (joined != count) refuseDamaged(cloud.source + ": has points in tiles that are not there");
+    return all;
+  }
+
+ private:
+  struct Place {
+    std::uint64_t begin = 0;
+    std::size_t count = 0;
+  };
+
+  template <typename T>
+  static void append(std::string& bytes, const std::vector<T>& values) {
+    bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
+  }
+
+  AnswerPiece read(const Place& place) const {
+    AnswerPiece piece;
+    std::uint64_t at = place.begin;
+    const auto take = [&](auto& values) {
+      values.resize(place.count);
+      const std::size_t bytes = values.size() * sizeof(values[0]);
+      file_.read(at, reinterpret_cast<char*>(values.data()), bytes);
+      at += bytes;
+    };
+    take(piece.point), take(piece.answers.cluxel), take(piece.answers.object), take(piece.answers.label);
+    return piece;
+  }
+
+  TemporaryBytes file_;
+  std::unordered_map<scan::ScanId, std::vector<Place>> places_;
+};
+
+class AnsweredClouds {
+ public:
+  AnsweredClouds(const MapReader& map, std::size_t max_cluxels)
+      : map_(map), clouds_(map.clouds()), inputs_(map.inputs()), stages_(map.model(), inputs_.params) {
+    std::vector<CountedTile> tiles;
+    std::uint32_t first = 0;
+    for (const TileKey& tile : storedTiles(map.transaction())) {
+      const std::size_t count = perception::cluxelsIn(requiredBlock(map.transaction(), tables::kSummaries, tile));
+      first_cluxel_.emplace(tile, first);
+      first += static_cast<std::uint32_t>(count);
+      tiles.push_back({tile, count});
+    }
+    regions_ = regionsOf(std::move(tiles), max_cluxels);
+  }
+
+  void visitAll(const AnsweredVisit& visit) {
+    if (regions_.size() == 1) return visitOneRegion(visit);
+    AnswerPieces pieces;
+    for (const TileSet& region : regions_) {
+      const RegionAnswers answers(map_, stages_, region, first_cluxel_);
+      for (const Cloud& cloud : clouds_)
+        if (!tilesInBounds(cloud, region).empty())
+          if (const AnswerPiece piece = answers.answersFor(cloud, map_.pointsOf(cloud.id)); !piece.point.empty())
+            pieces.add(cloud, piece);
+    }
+    stages_.dropAll();
+    returnFreeMemory();
+    for (const Cloud& cloud : clouds_) {
+      const scan::ScanPoints points = map_.pointsOf(cloud.id);
+      visit(cloud, points, pieces.join(cloud, points.size()));
+    }
+  }
+
+ private:
+  void visitOneRegion(const AnsweredVisit& visit) {
+    const RegionAnswers answers(map_, stages_, regions_.front(), first_cluxel_);
+    for (const Cloud& cloud : clouds_) {
+      const scan::ScanPoints points = map_.pointsOf(cloud.id);
+      const AnswerPiece piece = answers.answersFor(cloud, points);
+      if (piece.point.size() != points.size()) refuseDamaged(cloud.source + ": has points in tiles that are not there");
+      visit(cloud, points, piece.answers);
+    }
+  }
+
+  const MapReader& map_;
+  std::vector<Cloud> clouds_;
+  MapInputs inputs_;
+  TileStages stages_;
+  std::map<TileKey, std::uint32_t> first_cluxel_;
+  std::vector<TileSet> regions_;
+};
+
+}  // namespace
+
+void forEachAnsweredCloud(const MapReader& map, const AnsweredVisit& visit, std::size_t max_cluxels) {
+  AnsweredClouds(map, max_cluxels).visitAll(visit);
+}
+
+}  // namespace cluxel::mapping

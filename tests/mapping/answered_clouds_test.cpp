@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+// Clouds that are answered region by region are answered as by the whole map.
+#include "mapping/answered_clouds.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "cluxel/error.hpp"
+#include "mapping/small_campus.hpp"
+
+namespace cluxel::mapping {
+namespace {
+
+class AnsweredCloudsTest : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder = new ScratchFolder();
+    const SmallCampus campus({.seed = 7, .stops = 5, .size_m = 80, .points_per_stop = 5000, .max_range_m = 25});
+    buildMap(scansOf(campus.files()), shippedInputs(), folder->path() / "street.clx", {}, silence());
+    map = new MapReader(folder->path() / "street.clx");
+  }
+  static void TearDownTestSuite() {
+    delete map;
+    delete folder;
+  }
+
+  static inline ScratchFolder* folder = nullptr;
+  static inline MapReader* map = nullptr;
+};
+
+TEST_F(AnsweredCloudsTest, HaveTheAnswersOfTheWholeMapInItsOrderWhateverTheRegions) {
+  const std::vector<Cloud> clouds = map->clouds();
+  const std::size_t cluxels = map->scene().cluxels.size();
+  std::size_t with_object = 0, without = 0;
+  for (const std::size_t max_cluxels : {std::size_t{1}, std::size_t{1500}, cluxels / 2, cluxels}) {
+    std::size_t next = 0;
+    forEachAnsweredCloud(
+        *map,
+        [&](const Cloud& cloud, const scan::ScanPoints& points, const PointAnswers& answers) {
+          ASSERT_LT(next, clouds.size());
+          EXPECT_EQ(cloud.id, clouds[next++].id);
+          const scan::ScanPoints stored = map->pointsOf(cloud.id);
+          EXPECT_EQ(points.x, stored.x);
+          EXPECT_EQ(points.z, stored.z);
+          const PointAnswers expected = map->answersFor(cloud);
+          EXPECT_EQ(answers.cluxel, expected.cluxel) << max_cluxels;
+          EXPECT_EQ(answers.label, expected.label) << max_cluxels;
+          EXPECT_EQ(answers.object, expected.object) << max_cluxels;
+          for (const std::uint32_t object : answers.object) ++(object == kNoObjectOfPoint ? without : with_object);
+        },
+        max_cluxels);
+    EXPECT_EQ(next, clouds.size());
+  }
+  EXPECT_GT(with_object, 1000);
+  EXPECT_GT(without, 1000);
+}
+
+TEST_F(AnsweredCloudsTest, NeedTheFolderForTemporaryFilesOnlyForSeveralRegions) {
+  const auto ignore = [](const Cloud&, const scan::ScanPoints&, const PointAnswers&) {};
+  const char* before = std::getenv("TMPDIR");
+  const std::optional<std::string> kept = before == nullptr ? std::nullopt : std::optional<std::string>(before);
+  ::setenv("TMPDIR", "/there/is/none", 1);
+  EXPECT_NO_THROW(forEachAnsweredCloud(*map, ignore));
+  EXPECT_THROW(forEachAnsweredCloud(*map, ignore, 1), Error);
+  kept ? ::setenv("TMPDIR", kept->c_str(), 1) : ::unsetenv("TMPDIR");
+}
+
+}  // namespace
+}  // namespace cluxel::mapping
