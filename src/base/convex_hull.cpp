@@ -42,6 +42,21 @@ void appendChain(Iterator begin, Iterator end, std::vector<Eigen::Vector2d>& hul
   hull.pop_back();
 }
 
+/// Erases the points inside a convex polygon, whose corners come counter-clockwise and may come more than once.
+void eraseInside(const std::vector<Eigen::Vector2d>& corners, std::vector<Eigen::Vector2d>& points) {
+  std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>> sides;  // start, and the unit vector along it
+  for (std::size_t i = 0; i < corners.size(); ++i)
+    if (const Eigen::Vector2d side = corners[(i + 1) % corners.size()] - corners[i]; side.norm() > kInside_m)
+      sides.emplace_back(corners[i], side.normalized());
+  if (sides.size() < 3) return;
+  std::erase_if(points, [&](const Eigen::Vector2d& point) {
+    return std::all_of(sides.begin(), sides.end(), [&](const auto& side) {
+      const Eigen::Vector2d to = point - side.first;
+      return side.second.x() * to.y() - side.second.y() * to.x() > kInside_m;
+    });
+  });
+}
+
 /// Drops the points inside the octagon whose corners are the extreme points in eight directions.
 void dropInner(std::vector<Eigen::Vector2d>& points) {
   std::array<Eigen::Vector2d, 8> corner;  // counter-clockwise, as the corners of a hull; the first at the largest x
@@ -55,17 +70,7 @@ void dropInner(std::vector<Eigen::Vector2d>& points) {
     const std::array<double, 4> along{point.x(), point.x() + point.y(), point.y(), point.y() - point.x()};
     for (std::size_t i = 0; i < 4; ++i) extend(i, point, along[i]), extend(i + 4, point, -along[i]);
   }
-  std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>> sides;  // start, and the unit vector along it
-  for (std::size_t i = 0; i < 8; ++i)
-    if (const Eigen::Vector2d side = corner[(i + 1) % 8] - corner[i]; side.norm() > kInside_m)
-      sides.emplace_back(corner[i], side.normalized());
-  if (sides.size() < 3) return;
-  std::erase_if(points, [&](const Eigen::Vector2d& point) {
-    return std::all_of(sides.begin(), sides.end(), [&](const auto& side) {
-      const Eigen::Vector2d to = point - side.first;
-      return side.second.x() * to.y() - side.second.y() * to.x() > kInside_m;
-    });
-  });
+  eraseInside({corner.begin(), corner.end()}, points);
 }
 
 /// The corners of the box along a direction, in the frame of that direction.
@@ -115,6 +120,13 @@ std::vector<Eigen::Vector2d> convexHull(std::vector<Eigen::Vector2d> points) {
   appendChain(points.begin(), points.end(), hull);
   appendChain(points.rbegin(), points.rend(), hull);
   return hull;
+}
+
+std::vector<Eigen::Vector2d> outerPoints(std::vector<Eigen::Vector2d> points) {
+  if (points.size() < kMinFiltered) return points;
+  dropInner(points);
+  eraseInside(convexHull(points), points);
+  return points;
 }
 
 FootprintBox smallestBox(const std::vector<Eigen::Vector2d>& hull) {

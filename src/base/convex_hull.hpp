@@ -11,6 +11,10 @@ namespace cluxel {
 /// three points are returned sorted. Cost O(n log n).
 std::vector<Eigen::Vector2d> convexHull(std::vector<Eigen::Vector2d> points);
 
+/// Drops points well inside the hull: the hull of the rest is the same to the last bit, also together with any other
+/// points. So the hull of many points can be found piece by piece. Cost O(n log n).
+std::vector<Eigen::Vector2d> outerPoints(std::vector<Eigen::Vector2d> points);
+
 /// A rectangle around a hull. The rectangle of smallest area has a side along a side of the hull.
 struct FootprintBox {
   Eigen::Vector2d center = Eigen::Vector2d::Zero();  ///< [m]

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -83,6 +84,26 @@ TEST(ConvexHull, OfManyPointsHasAllOfThemInside) {
     }
     if (round % 4 == 2) {
       EXPECT_EQ(hull.size(), points.size()) << "every point of a circle is a corner";
+    }
+  }
+}
+
+TEST(ConvexHull, OfTheOuterPointsOfPiecesIsThatOfAllPointsToTheLastBit) {
+  std::mt19937 random(11);
+  for (int round = 0; round < 60; ++round) {
+    const Points points = round % 5 == 4 ? randomPoints(random, 400, true) : cloudOf(random, round % 5);
+    Points outer;
+    for (std::size_t first = 0; first < points.size();) {
+      const std::size_t count = std::min<std::size_t>(1 + random() % 300, points.size() - first);
+      const auto begin = points.begin() + static_cast<std::ptrdiff_t>(first);
+      const Points piece = outerPoints({begin, begin + static_cast<std::ptrdiff_t>(count)});
+      outer.insert(outer.end(), piece.begin(), piece.end());
+      first += count;
+    }
+    EXPECT_EQ(convexHull(outer), convexHull(points)) << "round " << round;
+    EXPECT_EQ(convexHull(outerPoints(points)), convexHull(points)) << "round " << round;
+    if (round % 5 == 0) {
+      EXPECT_LT(outerPoints(points).size(), 40U) << "points inside were kept";
     }
   }
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One GeoJSON feature (RFC 7946) per object: the convex hull of its cluxels seen from above.
+// One GeoJSON feature (RFC 7946) per object: the convex hull of its cluxels seen from above. Features are written one
+// by one.
 #include "tasks/export/footprint_export.hpp"
 
 #include <cmath>
@@ -7,9 +8,11 @@
 
 #include "base/convex_hull.hpp"
 #include "cluxel/error.hpp"
-#include "mapping/facts/object_geometry.hpp"
+#include "mapping/damaged_map.hpp"
+#include "mapping/layers/stored_layers.hpp"
 #include "rdf/map_iris.hpp"
 #include "rdf/ontology/ontology.hpp"
+#include "tasks/export/object_outlines.hpp"
 #include "tasks/export/proj_geo_reference.hpp"
 #include "tasks/gone_things.hpp"
 
@@ -26,21 +29,6 @@ double rounded(double value, double per_unit) {
 constexpr double kPerMetre = 1e3;   // millimetres
 constexpr double kPerDegree = 1e9;  // 0.1 mm on the ground
 
-/// Gives an object of one point an area [m].
-constexpr double kMargin_m = 0.005;
-
-std::vector<Eigen::Vector2d> footprintOf(const rules::SemanticObject& object, const perception::SceneCluxels& cluxels) {
-  std::vector<Eigen::Vector2d> corners;
-  for (const rules::ObjectPart& part : object.parts)
-    for (const std::uint32_t c : part.cluxels) {
-      const Eigen::Vector2d corner = cluxels.low_corner[c].head<2>(),
-                            extent = cluxels.extent[c].head<2>().cast<double>();
-      const Eigen::Vector2d low = corner.array() - kMargin_m, high = (corner + extent).array() + kMargin_m;
-      corners.insert(corners.end(), {low, {high.x(), low.y()}, {low.x(), high.y()}, high});
-    }
-  return convexHull(std::move(corners));
-}
-
 Json polygonJson(const std::vector<Eigen::Vector2d>& hull, const PlaceWriter& position) {
   Json ring = Json::array();
   for (const Eigen::Vector2d& p : hull) {
@@ -51,12 +39,12 @@ Json polygonJson(const std::vector<Eigen::Vector2d>& hull, const PlaceWriter& po
   return {{"type", "Polygon"}, {"coordinates", Json::array({ring})}};
 }
 
-Json propertiesOf(const rules::SemanticObject& object, std::size_t number, const mapping::MapReader& map,
-                  const rdf::OntologyView& ontology) {
+Json propertiesOf(std::uint32_t number, const mapping::ObjectRecord& object, const ObjectOutline& outline,
+                  const mapping::MapReader& map, const rdf::OntologyView& ontology) {
   const rdf::OntologyClass* known = ontology.find(object.class_iri);
   const std::string class_name = map.classNames().nameOf(object.class_iri);
-  const perception::UprightBox box = mapping::geometryOf(map.scene().cluxels, mapping::cluxelsOf(object)).box;
-  const std::string iri = rdf::iriOfObject(object.id);
+  const perception::UprightBox box = mapping::geometryOf(outline.extent).box;
+  const std::string iri = rdf::iriOfObject(map.objectIds()[number]);
   Json json{{"label", known == nullptr ? class_name : known->label()},
             {"class", class_name},
             {"height", rounded(box.size.z(), kPerMetre)},
@@ -68,6 +56,39 @@ Json propertiesOf(const rules::SemanticObject& object, std::size_t number, const
   if (const auto gone = seenThrough(map.quads(), iri)) json["seenThrough"] = *gone;
   return json;
 }
+
+/// The lines of a value that stands `depth` levels deep.
+std::string linesOf(const Json& json, std::size_t depth) {
+  const std::string indent(depth, ' ');
+  std::string lines = indent;
+  for (const char c : json.dump(1)) {
+    lines += c;
+    if (c == '\n') lines += indent;
+  }
+  return lines;
+}
+
+/// Writes a collection without features, and then one feature after the other into it.
+class FeatureWriter {
+ public:
+  FeatureWriter(Json collection, const ByteSink& out) : out_(out) {
+    collection["features"] = Json::array();
+    const std::string empty = collection.dump(1);
+    const std::size_t inside = empty.rfind(']');
+    out_(empty.substr(0, inside));
+    end_ = empty.substr(inside) + "\n";
+  }
+  void add(const Json& feature) {
+    out_((has_features_ ? ",\n" : "\n") + linesOf(feature, 2));
+    has_features_ = true;
+  }
+  void finish() { out_((has_features_ ? "\n " : "") + end_); }
+
+ private:
+  const ByteSink& out_;
+  std::string end_;
+  bool has_features_ = false;
+};
 
 }  // namespace
 
@@ -91,24 +112,24 @@ PlaceWriter placesIn(ExportFrame frame, const mapping::MapInputs& inputs) {
 void writeFootprints(const mapping::MapReader& map, ExportFrame frame, const ByteSink& out) {
   const mapping::MapInputs inputs = map.inputs();
   const PlaceWriter position = placesIn(frame, inputs);
-  const perception::SceneCluxels& cluxels = map.scene().cluxels;
   const rdf::OntologyView ontology = ontologyViewOf(map.quads());
-  Json features = Json::array();
-  for (std::size_t i = 0; i < map.objects().size(); ++i) {
-    const rules::SemanticObject& object = map.objects()[i];
-    features.push_back({{"type", "Feature"},
-                        {"id", object.id.hex()},
-                        {"geometry", polygonJson(footprintOf(object, cluxels), position)},
-                        {"properties", propertiesOf(object, i, map, ontology)}});
-  }
   Json collection{{"type", "FeatureCollection"}};
   if (frame == ExportFrame::Local) {
     collection["frame"] = "map frame of Cluxel, metres: not longitude and latitude";
     collection["crs_of_origin"] = inputs.crs;
     collection["origin"] = {inputs.map_origin.x(), inputs.map_origin.y(), inputs.map_origin.z()};
   }
-  collection["features"] = std::move(features);
-  out(collection.dump(1) + "\n");
+  FeatureWriter features(std::move(collection), out);
+  forEachOutline(map, [&](std::uint32_t number, const ObjectOutline& outline) {
+    const ContentHash& id = map.objectIds()[number];
+    const auto object = mapping::storedRecord(map.transaction(), id);
+    if (!object) mapping::refuseDamaged("an object has no record");
+    features.add(Json{{"type", "Feature"},
+                      {"id", id.hex()},
+                      {"geometry", polygonJson(convexHull(outline.footprint), position)},
+                      {"properties", propertiesOf(number, *object, outline, map, ontology)}});
+  });
+  features.finish();
 }
 
 }  // namespace cluxel::tasks
