@@ -3,11 +3,12 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <cstdint>
 #include <map>
-#include <set>
+#include <memory>
 #include <vector>
+
+#include "tasks/evaluation/touching_trees.hpp"
 
 namespace cluxel::tasks {
 
@@ -21,21 +22,20 @@ class CrownPairs {
   /// A point of the true tree `instance`; `is_trunk` when its true primitive is a column. `object` kNoObjectOfPoint
   /// means none.
   void add(const Eigen::Vector3d& p_map, std::int32_t instance, bool is_trunk, std::uint32_t object);
-  /// Trees without points of a trunk, and those of `ambiguous` (sorted), count in no pair.
-  CrownPairScore score(const std::vector<std::int32_t>& ambiguous) const;
+  /// Trees without points of a trunk, and those of `ambiguous` (sorted), count in no pair. Is called once, after all
+  /// points.
+  CrownPairScore score(const std::vector<std::int32_t>& ambiguous);
 
  private:
-  using Cell = std::array<std::int64_t, 3>;
   struct TrueTree {
     Eigen::Vector2d trunk_sum = Eigen::Vector2d::Zero();
     std::uint64_t trunk_points = 0;
     std::map<std::uint32_t, std::uint64_t> objects;
   };
   static std::uint32_t mainObject(const TrueTree& tree);
-  std::set<std::array<std::int32_t, 2>> touchingPairs() const;
 
   std::map<std::int32_t, TrueTree> trees_;
-  std::map<Cell, std::set<std::int32_t>> trees_of_cell_;
+  std::unique_ptr<TouchingTrees> touching_ = std::make_unique<TouchingTrees>();
 };
 
 }  // namespace cluxel::tasks

@@ -9,6 +9,8 @@
 #include <numeric>
 
 #include "cluxel/error.hpp"
+#include "mapping/answered_clouds.hpp"
+#include "mapping/layers/stored_layers.hpp"
 #include "mapping/map_inputs.hpp"
 #include "tasks/evaluation/object_matching.hpp"
 #include "tasks/evaluation/truth_class.hpp"
@@ -25,14 +27,24 @@ double harmonic(double a, double b) {
   return a + b == 0 ? 0.0 : 2 * a * b / (a + b);
 }
 
-scan::Scan scanOf(const mapping::MapReader& map, const mapping::Cloud& cloud) {
+scan::Scan scanOf(const mapping::Cloud& cloud, const scan::ScanPoints& points) {
   scan::Scan scan;
-  scan.points = map.pointsOf(cloud.id);
+  scan.points = points;
   scan.T_map_sensor = cloud.T_map_sensor;
   scan.has_pose = cloud.has_pose;
   scan.source = cloud.source;
   scan.id = cloud.id;
   return scan;
+}
+
+/// The objects of the map, without what belongs to them.
+std::vector<rules::SemanticObject> namedObjects(const mapping::MapReader& map) {
+  std::vector<rules::SemanticObject> objects;
+  mapping::forEachRecord(map.transaction(), [&](const ContentHash& id, const mapping::ObjectRecord& record) {
+    rules::SemanticObject& object = objects.emplace_back();
+    object.id = id, object.class_iri = record.class_iri, object.confidence = record.confidence;
+  });
+  return objects;
 }
 
 std::vector<std::string> primitiveNames() {
@@ -232,12 +244,12 @@ MapEvaluation evaluateMap(const mapping::MapReader& map, const TruthSource& sour
   refuseSharedTruth(map, source);
   const TruthClasses classes = source.classes();
   MapEvaluation evaluation{ConfusionMatrix(primitiveNames()), ConfusionMatrix(classes.names), false, {}, {}, {}};
-  std::vector<std::size_t> class_of_object =
-      truthClassesOf(map.objects(), classes, classCatalogueOf(map.inputs().ontology));
+  const std::vector<rules::SemanticObject> objects = namedObjects(map);
+  std::vector<std::size_t> class_of_object = truthClassesOf(objects, classes, classCatalogueOf(map.inputs().ontology));
   ObjectMatching matching(classes.names, class_of_object, source.ambiguous());
-  PointVisit visit{source, std::move(class_of_object), std::move(matching), ClassVotes(map.objects().size()),
-                   evaluation};
-  for (const mapping::Cloud& cloud : map.clouds()) visit.see(scanOf(map, cloud), map.answersFor(cloud));
+  PointVisit visit{source, std::move(class_of_object), std::move(matching), ClassVotes(objects.size()), evaluation};
+  forEachAnsweredCloud(map, [&](const mapping::Cloud& cloud, const scan::ScanPoints& points,
+                                const mapping::PointAnswers& answers) { visit.see(scanOf(cloud, points), answers); });
   if (evaluation.primitives.total() == 0 && evaluation.objects.total() == 0)
     throw Error(ErrorKind::FaultyInput, "the truth says nothing about the points of this map; is it of other scans?");
   evaluation.covers_all = source.coversAll();
@@ -246,11 +258,11 @@ MapEvaluation evaluateMap(const mapping::MapReader& map, const TruthSource& sour
   evaluation.by_points = visit.matching.scoreByPoints(params);
   evaluation.matched_whole = visit.matching.matchedWhole(params);
   evaluation.judged = visit.matching.judgedByPoints(params);
-  for (JudgedAnswer& judged : evaluation.judged) judged.confidence = map.objects()[judged.object].confidence;
+  for (JudgedAnswer& judged : evaluation.judged) judged.confidence = objects[judged.object].confidence;
   evaluation.kinds = visit.matching.answersByKind(visit.kinds, params);
   const auto ground = std::find(classes.names.begin(), classes.names.end(), "Ground") - classes.names.begin();
-  evaluation.calibration = visit.votes.calibrationOf(map.objects(), visit.class_of_object, classes.names.size(),
-                                                     static_cast<std::size_t>(ground));
+  evaluation.calibration =
+      visit.votes.calibrationOf(objects, visit.class_of_object, classes.names.size(), static_cast<std::size_t>(ground));
   evaluation.crown_pairs = visit.crowns.score(source.ambiguous());
   return evaluation;
 }
