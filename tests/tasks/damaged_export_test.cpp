@@ -2,6 +2,8 @@
 // A flipped bit in the blocks of a map: every export gives the bytes of the sound map, or an error.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <fstream>
 #include <random>
 
@@ -26,10 +28,13 @@ struct Bytes {
   std::size_t begin = 0, size = 0;
 };
 
+/// Of a table that exports of points or footprints read.
 bool isBlockKey(std::string_view key) {
+  constexpr std::array<std::string_view, 9> kRead{"meta",         "objects",         "scans",
+                                                  "scan_points",  "stage_points",    "stage_cluxels",
+                                                  "stage_labels", "stage_summaries", "tile_layers"};
   const std::string_view table = key.substr(0, key.find('\0'));
-  return table.size() < key.size() &&
-         (table == "meta" || table == "scans" || table == "scan_points" || table.starts_with("stage_"));
+  return table.size() < key.size() && std::find(kRead.begin(), kRead.end(), table) != kRead.end();
 }
 
 /// Where the blocks lie: whole pages with their keys, and the pages of long values.
@@ -96,7 +101,7 @@ class DamagedExport : public testing::Test {
 
 TEST_F(DamagedExport, IsTheSoundOneOrAnError) {
   const std::vector<Bytes> places = blockBytes(bytes_);
-  ASSERT_GT(places.size(), 50U);
+  ASSERT_GT(places.size(), 20U);
   std::mt19937 random(7);
   int errors = 0;
   for (int i = 0; i < 20; ++i) {
