@@ -17,7 +17,7 @@
 namespace cluxel::tasks {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 using Corners = std::vector<Eigen::Vector2d>;
 
 /// The hull of the boxes of all cluxels of an object, each wider by 5 mm.
@@ -54,16 +54,16 @@ TEST(ObjectOutlines, AreThoseOfTheWholeSceneToTheLastBitWhateverFitsIntoMemory) 
   }
 }
 
-Json featureOf(const mapping::MapReader& map, std::size_t number, const rdf::OntologyView& ontology) {
+OrderedJson featureOf(const mapping::MapReader& map, std::size_t number, const rdf::OntologyView& ontology) {
   const auto rounded = [](double value) { return std::round(value * 1000) / 1000; };
   const rules::SemanticObject& object = map.objects()[number];
-  Json ring = Json::array();
+  OrderedJson ring = OrderedJson::array();
   for (const Eigen::Vector2d& p : footprintInScene(map, object)) ring.push_back({rounded(p.x()), rounded(p.y())});
   ring.push_back(ring.front());
   const auto box = mapping::geometryOf(map.scene().cluxels, mapping::cluxelsOf(object)).box;
   return {{"type", "Feature"},
           {"id", object.id.hex()},
-          {"geometry", {{"type", "Polygon"}, {"coordinates", Json::array({ring})}}},
+          {"geometry", {{"type", "Polygon"}, {"coordinates", OrderedJson::array({ring})}}},
           {"properties",
            {{"label", ontology.find(object.class_iri)->label()},
             {"class", mapping::localName(object.class_iri)},
@@ -79,11 +79,11 @@ TEST(ObjectOutlines, GiveTheBytesOfACollectionThatIsWrittenAsAWhole) {
   const mapping::MapReader& map = CampusMap::shared().map();
   const rdf::OntologyView ontology = rdf::ontologyViewOf(map.quads());
   const mapping::MapInputs inputs = map.inputs();
-  Json whole{{"type", "FeatureCollection"}};
+  OrderedJson whole{{"type", "FeatureCollection"}};
   whole["frame"] = "map frame of Cluxel, metres: not longitude and latitude";
   whole["crs_of_origin"] = inputs.crs;
   whole["origin"] = {inputs.map_origin.x(), inputs.map_origin.y(), inputs.map_origin.z()};
-  whole["features"] = Json::array();
+  whole["features"] = OrderedJson::array();
   for (std::size_t i = 0; i < map.objects().size(); ++i) whole["features"].push_back(featureOf(map, i, ontology));
   std::string text;
   exportMap(
