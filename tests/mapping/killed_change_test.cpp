@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "base/file_bytes.hpp"
 #include "mapping/change/map_merge.hpp"
 #include "mapping/change/map_update.hpp"
 #include "mapping/change/rdf_loading.hpp"
