@@ -92,8 +92,7 @@ TEST_F(SortedInFolder, TellThatTheDiskIsFull) {
     ::setrlimit(RLIMIT_FSIZE, &limit);
     SortedRecords records(1000);
     const std::string failure = failureOf([&] { addMany(records); });
-    const bool names_folder =
-        failure.starts_with(folder_.string() + ": a temporary file cannot be written");
+    const bool names_folder = failure.starts_with(folder_.string() + ": a temporary file cannot be written");
     ::_exit(names_folder && failure.find("set TMPDIR") != std::string::npos ? 0 : 1);
   }
   int status = 0;
