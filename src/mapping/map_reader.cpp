@@ -263,6 +263,9 @@ const TileStages& MapReader::stagesWithPoints() const {
 WayGraph MapReader::ways() const {
   return storedWays(impl_->transaction);
 }
+WayGraph MapReader::measuredWays() const {
+  return mapping::measuredWays(impl_->transaction);
+}
 
 PointAnswers MapReader::answersFor(const Cloud& cloud) const {
   const TileStages& stages = impl_->readPoints();

@@ -43,6 +43,8 @@ inline constexpr std::string_view kOverruled = "overruled";     ///< object id �
 inline constexpr std::string_view kStated = "stated";           ///< statement id → the tiles that it is about
 inline constexpr std::string_view kSurfaces = "stage_surfaces";
 inline constexpr std::string_view kWays = "stage_ways";
+/// Tile near gone objects → their hash, and its even ground without them where that differs from kEven.
+inline constexpr std::string_view kFreed = "freed_ground";
 
 /// Keys sort by tile: big-endian with inverted sign bit.
 inline std::string keyOf(const perception::TileKey& tile) {

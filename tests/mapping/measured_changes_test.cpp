@@ -16,6 +16,7 @@
 #include "mapping/change/map_merge.hpp"
 #include "mapping/long_tests.hpp"
 #include "mapping/small_campus.hpp"
+#include "tasks/box_visits.hpp"
 
 namespace cluxel::mapping {
 namespace {
@@ -90,10 +91,28 @@ std::vector<Scan> stopsOfCampus() {
   return scans;
 }
 
+/// A car between two walls that is there, gone, and there again, a day from one visit to the next.
+std::vector<Scan> visitsOfACar() {
+  const std::vector<tasks::Box> walls{tasks::boxFrom({-15, 10, 0}, {15, 10.5, 5}),
+                                      tasks::boxFrom({-15, -12.5, 0}, {15, -12, 5})};
+  std::vector<tasks::Box> all = walls;
+  all.push_back(tasks::boxFrom({2, 4, 0.05}, {6.2, 5.8, 1.5}));
+  std::vector<Scan> scans;
+  for (const std::vector<tasks::Box>& boxes : {all, walls, all})
+    for (const Eigen::Vector3d& sensor : {Eigen::Vector3d(1, -1, 1.8), Eigen::Vector3d(6, 1, 1.8)}) {
+      const auto number = static_cast<unsigned>(scans.size());
+      scans.push_back(
+          partOf(tasks::scanOf({boxes, {}}, sensor, number), [](float x, float y) { return std::hypot(x, y) < 15; }));
+      scans.back().time_s = 1.7e9 + 86400.0 * (number / 2) + 10 * number;
+    }
+  return scans;
+}
+
 struct Sensor {
   const char* name = nullptr;
   bool is_outside = true;  ///< in a folder of the name among the data from outside
   std::vector<Scan> (*scans)() = nullptr;
+  bool has_times = false;
 };
 
 class MeasuredChanges : public testing::TestWithParam<Sensor> {
@@ -103,13 +122,16 @@ class MeasuredChanges : public testing::TestWithParam<Sensor> {
   void SetUp() override {
     if (GetParam().is_outside && !fs::exists(test::outsideDataFolder() / GetParam().name))
       GTEST_SKIP() << "outside data absent: " << GetParam().name;
-    std::vector<fs::path> files;
+    const fs::path given = folder_.path() / "scans";
+    fs::create_directory(given);
+    std::vector<double> times_s;
     for (const Scan& scan : GetParam().scans()) {
       ASSERT_GT(scan.points.size(), 2000U);
-      files.push_back(folder_.path() / ("scan" + std::to_string(files.size()) + ".pcd"));
-      writeScanFile(scan, files.back());
+      writeScanFile(scan, given / ("scan" + std::to_string(times_s.size()) + ".pcd"));
+      times_s.push_back(scan.time_s.value_or(0));
     }
-    scans_ = std::make_unique<ScanSet>(scansOf(files));
+    if (GetParam().has_times) writeTimes(times_s, given / "times.txt");
+    scans_ = std::make_unique<ScanSet>(scansOf({given}));
     for (std::size_t i = 0; i < scans_->size(); ++i) ids_.push_back(scans_->load(i).id), all_[i] = 0;
     expected_ = fromScratch(all_);
   }
@@ -248,7 +270,9 @@ TEST_P(MeasuredChanges, HalfOfThePosesMovedAndCorrected) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Sensors, MeasuredChanges,
-                         testing::Values(Sensor{"campus", false, stopsOfCampus}, Sensor{"kitti00", true, framesOfKitti},
+                         testing::Values(Sensor{"campus", false, stopsOfCampus},
+                                         Sensor{"visits", false, visitsOfACar, true},
+                                         Sensor{"kitti00", true, framesOfKitti},
                                          Sensor{"oakland3d", true, windowsOfOakland}),
                          [](const auto& info) { return std::string(info.param.name); });
 

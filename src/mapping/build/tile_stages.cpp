@@ -272,6 +272,7 @@ TileSet TileStages::run(rdf::WriteTransaction& transaction, PointChanges changes
   }
   storeTiles(transaction, store.tiles());
   changed_even_.insert(store.changedEven().begin(), store.changedEven().end());
+  changed_outputs_.insert(changes_.tiles.begin(), changes_.tiles.end());
   even_ = std::exchange(outputs_.even, {});  // what is missing is read
   return changed;
 }

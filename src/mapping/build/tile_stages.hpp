@@ -58,6 +58,8 @@ class TileStages {
   bool updateWays(rdf::WriteTransaction& transaction, unsigned threads);
   /// The stages of ways count the even ground of `changed` as changed, and that of other tiles in `kept` no longer.
   void noteEven(const perception::TileSet& kept, const perception::TileSet& changed);
+  /// The tiles of which an output changed since the last call of this function.
+  perception::TileSet takeChangedOutputs() { return std::exchange(changed_outputs_, {}); }
   /// Gives outputs of many tiles back; those of few are likely to be read again soon.
   void dropIfMany() {
     constexpr std::size_t kFew = 400;
@@ -126,7 +128,7 @@ class TileStages {
   perception::TileSet read_as_before_;
   OutputChanges changes_;
   /// Tiles of which the even ground changed, came or went since the stages of ways were brought up to date.
-  perception::TileSet changed_even_;
+  perception::TileSet changed_even_, changed_outputs_;
   std::map<perception::TileKey, perception::EvenTile> even_;  ///< of those that are at hand
 };
 

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "base/parallel.hpp"
+#include "mapping/build/freed_tiles.hpp"
 #include "mapping/clouds/scan_store.hpp"
 #include "mapping/damaged_map.hpp"
 #include "mapping/map_tables.hpp"
@@ -91,7 +92,10 @@ class WayUpdate {
   BlockInputs inputsOf(const TileSet& block, bool with_surfaces) const {
     BlockInputs inputs{block, withRing(block, all_), {}, {}};
     for (const TileKey& key : inputs.context) {
-      if (!fresh_.contains(key)) inputs.even.emplace(key, requiredBlock(transaction_, tables::kEven, key));
+      if (const auto freed = freedTile(transaction_, key))
+        inputs.even.emplace(key, *freed);
+      else if (!fresh_.contains(key))
+        inputs.even.emplace(key, requiredBlock(transaction_, tables::kEven, key));
       if (with_surfaces) inputs.surfaces.emplace(key, requiredBlock(transaction_, tables::kSurfaces, key));
     }
     return inputs;
@@ -99,8 +103,9 @@ class WayUpdate {
 
   EvenTileSource evenIn(const BlockInputs& inputs) const {
     return [this, &inputs](const TileKey& key) {
-      if (const auto found = fresh_.find(key); found != fresh_.end()) return found->second;
-      return ofTile(key, perception::evenTileFromBytes(inputs.even.at(key)));
+      if (const auto found = inputs.even.find(key); found != inputs.even.end())
+        return ofTile(key, perception::evenTileFromBytes(found->second));
+      return fresh_.at(key);
     };
   }
 
@@ -145,6 +150,12 @@ WayGraph storedWays(const rdf::ReadTransaction& transaction) {
   for (const TileKey& key : storedTiles(transaction))
     tiles.push_back(ofTile(key, wayTileFromBytes(requiredBlock(transaction, tables::kWays, key))));
   return mergedWays(tiles);
+}
+
+WayGraph measuredWays(const rdf::ReadTransaction& transaction) {
+  return waysOf(storedTiles(transaction), [&](const TileKey& key) {
+    return ofTile(key, perception::evenTileFromBytes(requiredBlock(transaction, tables::kEven, key)));
+  });
 }
 
 }  // namespace cluxel::mapping

@@ -15,5 +15,8 @@ perception::TileSet updateWayTiles(rdf::WriteTransaction& transaction, const per
 
 /// The ways of all tiles of a map, from their stored outputs.
 WayGraph storedWays(const rdf::ReadTransaction& transaction);
+/// The ways that follow from all points, those of gone things too: what rules see that ask the map, because objects are
+/// not known then. Cost: about 1 ms a tile.
+WayGraph measuredWays(const rdf::ReadTransaction& transaction);
 
 }  // namespace cluxel::mapping

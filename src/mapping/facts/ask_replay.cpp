@@ -28,7 +28,7 @@ struct AskReplay::Impl {
     if (oracle) return *oracle;
     inputs = map.inputs();
     clouds = map.clouds();
-    ways = map.ways();
+    ways = map.measuredWays();
     scratch = rdf::Environment::temporary();
     transaction.emplace(scratch->write());
     writeOntology(*transaction, inputs);

@@ -6,6 +6,8 @@
 #include <future>
 
 #include "cluxel/error.hpp"
+#include "mapping/build/freed_tiles.hpp"
+#include "mapping/build/way_telling.hpp"
 #include "mapping/build/way_tiles.hpp"
 #include "mapping/clouds/scan_store.hpp"
 #include "mapping/facts/map_facts.hpp"
@@ -69,9 +71,12 @@ std::vector<ToldWay> writeObserved(SceneFacts& of_scene, const ObservedMap& map,
   return std::move(told.now);
 }
 
-/// The ways of the map. With `is_beside` another thread makes them, which alone uses the transaction until then.
+/// The ways of the map, as far as they are known before objects: with what gone things left in the ground as of the
+/// commit before; with all of it when rules ask the map. With `is_beside` another thread makes them, which alone uses
+/// the transaction until then.
 std::shared_future<WayGraph> beginWays(rdf::WriteTransaction& transaction, TileStages& stages, unsigned threads,
-                                       bool is_beside) {
+                                       bool asks_map, bool is_beside) {
+  if (asks_map) stages.noteEven({}, eraseFreedTiles(transaction));
   std::shared_future<WayGraph> ways = std::async(is_beside ? std::launch::async : std::launch::deferred, [&, threads] {
     stages.updateWays(transaction, std::max(1U, threads - 1));
     return storedWays(transaction);
@@ -131,7 +136,7 @@ SemanticLayer writeSemanticLayer(rdf::WriteTransaction& transaction, const Parse
   const std::vector<Cloud> clouds = storedClouds(transaction);
   rules::KnownSplits splits = storedSplits(transaction);
   const bool is_beside = threads > 1 && !parsed.rules.asks_map;  // ways and facts of the scene need no objects
-  const std::shared_future<WayGraph> ways = beginWays(transaction, stages, threads, is_beside);
+  const std::shared_future<WayGraph> ways = beginWays(transaction, stages, threads, parsed.rules.asks_map, is_beside);
   perception::Scene scene = stages.takeScene(clouds);
   sink.progress("scene", scene.primitives.size(), scene.primitives.size());
   MapOracle oracle(transaction, [&](std::span<const rules::SemanticObject> objects) {
@@ -164,14 +169,20 @@ SemanticLayer writeSemanticLayer(rdf::WriteTransaction& transaction, const Parse
     const std::vector<std::uint64_t> hashes = perception::inputHashes(scene, stages.summaries());
     return layerBlocks({.scene = scene, .objects = result.objects, .traces = traces, .inputs = hashes});
   });
-  const std::vector<ToldWay> told_ways = writeObserved(facts,
-                                                       {parsed.inputs, clouds, scene, result, sightings, presence.times,
-                                                        presence.rays, near.get(), mergedParts(wide), threads},
-                                                       stated.outcomes, ways.get());
+  const auto storeAll = [&] {
+    if (blocks.valid()) storeLayers(transaction, {.scene = scene, .objects = result.objects}, blocks.get());
+  };
+  if (mayHaveFreedTiles(transaction)) storeAll();  // what objects left in the ground is looked up in them
+  const bool has_other_ways = freeWays(transaction, parsed, stages, threads);
+  const std::vector<ToldWay> told_ways =
+      writeObserved(facts,
+                    {parsed.inputs, clouds, scene, result, sightings, presence.times, presence.rays, near.get(),
+                     mergedParts(wide), threads},
+                    stated.outcomes, has_other_ways ? storedWays(transaction) : ways.get());
   storeToldWays(transaction, told_ways);
   storeWideTiles(transaction, wide);
   std::vector<WholeRule> whole_rules = inferFacts(transaction, parsed.inputs, sink, check);
-  storeLayers(transaction, {.scene = scene, .objects = result.objects}, blocks.get());
+  storeAll();
   storeOverruled(transaction, stated.overruled, scene);
   storeStatementTiles(transaction, stated.tiles);
   storeSplits(transaction, splits);

@@ -3,6 +3,7 @@
 #include "mapping/facts/told_ways.hpp"
 
 #include "cluxel/error.hpp"
+#include "mapping/build/freed_tiles.hpp"
 #include "mapping/map_tables.hpp"
 #include "rdf/file/commit_stamps.hpp"
 
@@ -26,6 +27,7 @@ void storeToldWays(rdf::WriteTransaction& transaction, const std::vector<ToldWay
 
 void keepToldWays(rdf::WriteTransaction& transaction) {
   if (rdf::hasStamp(transaction, kWaysStamp)) rdf::stampCommit(transaction, kWaysStamp);
+  keepFreedTiles(transaction);
 }
 
 std::optional<std::vector<ToldWay>> storedToldWays(const rdf::ReadTransaction& transaction) {

@@ -44,12 +44,16 @@ MaybePresence presenceOf(const Row& row) {
   return presence;
 }
 
+std::optional<Row> rowFrom(std::string_view bytes) {
+  if (bytes.size() != sizeof(Row)) return std::nullopt;
+  Row row;
+  std::memcpy(&row, bytes.data(), sizeof row);
+  return row;
+}
+
 std::optional<Row> storedRow(const rdf::ReadTransaction& transaction, const ContentHash& object) {
   const auto bytes = transaction.block(tables::kPresence, tables::keyOf(object));
-  if (!bytes || bytes->size() != sizeof(Row)) return std::nullopt;
-  Row row;
-  std::memcpy(&row, bytes->data(), sizeof row);
-  return row;
+  return bytes ? rowFrom(*bytes) : std::nullopt;
 }
 
 /// The hash of what a cloud's rays say: its points are named by its id.
@@ -87,6 +91,17 @@ PresenceUpdate::PresenceUpdate(const rdf::ReadTransaction& transaction, std::spa
     }
   }
   if (!asked.empty()) voting_.emplace(std::move(asked), clouds, threads);
+}
+
+std::vector<ContentHash> objectsSeenThrough(const rdf::ReadTransaction& transaction) {
+  std::vector<ContentHash> gone;
+  transaction.forEachBlock(tables::kPresence, "", [&](std::string_view key, std::string_view bytes) {
+    const std::optional<Row> row = rowFrom(bytes);
+    if (!row) return;
+    if (const MaybePresence presence = presenceOf(*row); presence && presence->seen_through_s)
+      gone.push_back(tables::hashOfKey(key));
+  });
+  return gone;
 }
 
 std::vector<MaybePresence> PresenceUpdate::finish(rdf::WriteTransaction& transaction, Covered covered) {

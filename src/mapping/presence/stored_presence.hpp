@@ -38,4 +38,8 @@ class PresenceUpdate {
   std::optional<PresenceVoting> voting_;
 };
 
+/// The objects of the stored rows that are gone: a scan saw through their place after they were there last
+/// (clx:seenThrough). Ascending. Cost: about 100 ns a row.
+std::vector<ContentHash> objectsSeenThrough(const rdf::ReadTransaction& transaction);
+
 }  // namespace cluxel::mapping

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "base/free_memory.hpp"
+#include "mapping/build/way_telling.hpp"
 #include "mapping/clouds/scan_store.hpp"
 #include "mapping/damaged_map.hpp"
 #include "mapping/facts/semantic_layer.hpp"
@@ -90,6 +91,7 @@ class GrowthUpdate {
     if (!std::all_of(wide.begin(), wide.end(), [&](const ContentHash& id) { return isThere(id); }))
       return decideWholeMap();
     tellRays();
+    tellWaysWithoutGone(transaction_, work_.parsed, work_.stages, params_.threads);
     transaction_.writePages();
     returnFreeMemory();
     update.whole_rules = inferFacts(transaction_, work_.parsed.inputs, work_.sink, work_.check);

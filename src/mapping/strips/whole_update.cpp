@@ -6,6 +6,7 @@
 #include <set>
 
 #include "base/free_memory.hpp"
+#include "mapping/build/way_telling.hpp"
 #include "mapping/clouds/scan_store.hpp"
 #include "mapping/facts/told_ways.hpp"
 #include "mapping/layers/stored_layers.hpp"
@@ -78,6 +79,7 @@ class StripUpdate {
     if (work_.check) work_.check(0);
     tellPresence(transaction_, made.take(), storedClouds(transaction_), made.removed(), params_.threads);
     eraseRowsWithoutObject(transaction_);
+    tellWaysWithoutGone(transaction_, work_.parsed, work_.stages, params_.threads);
     transaction_.writePages();
     returnFreeMemory();
     update.whole_rules = inferFacts(transaction_, work_.parsed.inputs, work_.sink, work_.check);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "mapping/build/freed_tiles.hpp"
 #include "mapping/clouds/scan_store.hpp"
 #include "mapping/damaged_map.hpp"
 #include "mapping/layers/stored_layers.hpp"
@@ -147,8 +148,11 @@ void LentDecisions::readCommonTiles() {
 
 void LentDecisions::lendRows() {
   for (const TileKey& tile : lent_)
-    for (const std::string_view table :
-         {tables::kTileLayers, tables::kMargins, tables::kWideTiles, tables::kSurfaces, tables::kWays})
+    for (const std::string_view table : {tables::kTileLayers, tables::kMargins, tables::kWideTiles})
+      copyBlock(transaction_, lender_, table, tile);
+  if (!copyFreedTiles(transaction_, lender_, lent_)) return;  // ways that the map lacks are made
+  for (const TileKey& tile : lent_)
+    for (const std::string_view table : {tables::kSurfaces, tables::kWays})
       copyBlock(transaction_, lender_, table, tile);
 }
 

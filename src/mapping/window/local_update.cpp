@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <unordered_map>
 
+#include "mapping/build/way_telling.hpp"
 #include "mapping/build/way_tiles.hpp"
 #include "mapping/clouds/scan_store.hpp"
 #include "mapping/facts/told_ways.hpp"
@@ -246,8 +247,7 @@ class LocalUpdate {
   SemanticUpdate write(const DecidedWindow& decided, WindowStatements& statements) {
     const auto& [window, change, decision, former, wide, input_of] = decided;
     SemanticUpdate update;
-    update.is_local = true;
-    update.tiles_decided = window.tiles.size();
+    update.is_local = true, update.tiles_decided = window.tiles.size();
     std::vector<rules::SemanticObject> made = decision.objects;
     std::erase_if(made, [](const rules::SemanticObject& object) { return object.is_class_wide; });
     update.objects = before_.objects + made.size() - decision.replaced.size();
@@ -271,6 +271,7 @@ class LocalUpdate {
     if (strip_ == nullptr && !now_.statements.empty())
       update.statements = toldOutcomes(rdf::QuadReader(static_cast<const rdf::ReadTransaction&>(transaction_)));
     updatePassedObjects(transaction_, parsed_, stages_, clouds_, passed_, window, params_.threads);
+    if (strip_ == nullptr) tellWaysWithoutGone(transaction_, parsed_, stages_, params_.threads);
     if (check_) check_(0);
     if (strip_ == nullptr) update.whole_rules = inferFacts(transaction_, parsed_.inputs, sink_, check_);
     now_.objects = update.objects, now_.cluxels = update.cluxels, now_.primitives = update.primitives;

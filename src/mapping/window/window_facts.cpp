@@ -6,11 +6,11 @@
 #include <map>
 #include <set>
 
+#include "mapping/build/way_telling.hpp"
 #include "mapping/facts/fact_order.hpp"
 #include "mapping/facts/fact_patch.hpp"
 #include "mapping/facts/map_facts.hpp"
 #include "mapping/facts/object_facts.hpp"
-#include "mapping/facts/way_facts.hpp"
 #include "mapping/layers/stored_layers.hpp"
 #include "mapping/layers/wide_tile.hpp"
 #include "mapping/statements/statement_facts.hpp"
@@ -44,7 +44,7 @@ class FactWriting {
     replaceObjects();
     replaceWideObjects();
     replaceStatements();
-    if (sources_.ways != nullptr) replaceWays();
+    if (sources_.ways != nullptr) replaceWayFacts(transaction_, *sources_.ways, stored_, facts_, patch_);
     for (const std::string& patch : sources_.more_patches) touched_.insert(iri(patch));
     patch_.write(facts_.take(), facts_.writer());
     renewPatches();
@@ -194,32 +194,6 @@ class FactWriting {
       if (sources_.decided.decision.is_decided[i] != 0)
         exchanged.push_back(iri(rdf::iriOfPrimitive(scene_.primitives[i].id)));
     return exchanged;
-  }
-
-  void replaceWays() {
-    const auto before = storedToldWays(transaction_);
-    if (!before) forgetWays();
-    const ToldWays told = addWayFacts(*sources_.ways, before.value_or(std::vector<ToldWay>()), facts_);
-    for (const auto& [kind, name] : told.exchanged) forgetWay(iri(iriOfWay(kind, name)));
-    storeToldWays(transaction_, told.now);
-  }
-
-  void forgetWay(rdf::TermId subject) {
-    const std::string geo(rdf::vocabulary::kGeo);
-    for (const std::string_view property : {"hasGeometry", "hasCentroid", "hasBoundingBox"})
-      for (const rdf::TermId node : patch_.objectsOf(subject, facts_.property(geo + std::string(property))))
-        patch_.replace(node);
-    patch_.replace(subject);
-  }
-
-  /// All that have facts.
-  void forgetWays() {
-    const rdf::TermId type = facts_.property(rdf::vocabulary::rdf("type"));
-    using Kind = std::pair<std::string_view, WayKind>;
-    for (const auto& [name, kind] : {Kind{"Way", WayKind::Way}, Kind{"Junction", WayKind::Junction},
-                                     Kind{"Region", WayKind::Region}, Kind{"Kerb", WayKind::Kerb}})
-      for (const rdf::TermId subject : patch_.subjectsOf(type, iri(rdf::vocabulary::clx(name))))
-        if (stored_.termOf(subject).text.starts_with(iriOfWays(kind))) forgetWay(subject);  // else an object
   }
 
   /// A ground patch is there as long as some primitive touches it.

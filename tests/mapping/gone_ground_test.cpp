@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+// Ways over ground on which a thing stood that is gone are those of a map without its points, and follow when it comes
+// back: a changed map is then the one that a build makes from nothing.
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <numeric>
+#include <set>
+
+#include "mapping/build/freed_tiles.hpp"
+#include "mapping/change/map_change.hpp"
+#include "mapping/change/map_merge.hpp"
+#include "mapping/map_tables.hpp"
+#include "mapping/presence/stored_presence.hpp"
+#include "tasks/box_visits.hpp"
+
+namespace cluxel::mapping {
+namespace {
+
+namespace fs = std::filesystem;
+using tasks::Box;
+using tasks::boxFrom;
+using Visits = std::set<std::size_t>;
+
+/// Cars between two walls. One of them, which reaches down to the ground, is there on visits 0 and 2 alone.
+class GoneGround : public testing::Test {
+ protected:
+  static constexpr std::size_t kVisits = 3, kSensors = 3;
+
+  static void SetUpTestSuite() {
+    folder = new rdf::ScratchFolder;
+    inputs = new MapInputs(shippedInputs());
+    const Box north = boxFrom({-15, 10, 0}, {15, 10.5, 5}), south = boxFrom({-15, -12.5, 0}, {15, -12, 5});
+    const Box stays = boxFrom({-5, 4, 0.05}, {-0.8, 5.8, 1.5}), stays_too = boxFrom({8.5, 4, 0.05}, {12.7, 5.8, 1.5});
+    const std::vector<Box> rest{north, south, stays, stays_too};
+    std::vector<Box> all = rest;
+    all.push_back(kLeaves);
+    const std::vector<Eigen::Vector3d> sensors{{1, -1, 1.8}, {5, 0, 1.8}, {8, 1, 1.8}};
+    tasks::writeVisits({{all, sensors}, {rest, sensors}, {all, sensors}}, folder->path() / "with");
+    tasks::writeVisits({{rest, sensors, {kLeaves}}, {rest, sensors}}, folder->path() / "without");
+    scans = new ScanSet(scansOf({folder->path() / "with"}));
+  }
+  static void TearDownTestSuite() {
+    delete scans, delete inputs, delete folder;
+    built.clear();
+  }
+
+  static ScanSet scansIn(const Visits& visits) {
+    std::vector<std::size_t> chosen;
+    for (const std::size_t visit : visits)
+      for (std::size_t i = 0; i < kSensors; ++i) chosen.push_back(visit * kSensors + i);
+    return scans->only(chosen);
+  }
+  static std::vector<ScanId> idsIn(std::size_t visit) {
+    std::vector<ScanId> ids;
+    for (std::size_t i = 0; i < kSensors; ++i) ids.push_back(scans->load(visit * kSensors + i).id);
+    return ids;
+  }
+  static fs::path build(const ScanSet& given, const std::string& name, const BuildParams& params = {}) {
+    const fs::path map = folder->path() / name;
+    fs::remove(map);
+    buildMap(given, *inputs, map, params, silence());
+    return map;
+  }
+
+  /// Facts, and what ways are made from.
+  static std::string contentOf(const fs::path& map) {
+    std::string content = canonicalText(map);
+    const ReadTransaction transaction = Environment::open(map, OpenMode::ReadOnly)->read();
+    for (const auto table : {tables::kSurfaces, tables::kWays, tables::kFreed})
+      transaction.forEachBlock(
+          table, "", [&](std::string_view key, std::string_view bytes) { content.append(key).append(bytes); });
+    return content;
+  }
+  static const std::string& fromScratch(const Visits& visits) {
+    const auto [entry, is_new] = built.try_emplace(visits);
+    if (is_new) entry->second = contentOf(build(scansIn(visits), "fresh.clx"));
+    return entry->second;
+  }
+  static std::size_t goneIn(const fs::path& map) {
+    return objectsSeenThrough(Environment::open(map, OpenMode::ReadOnly)->read()).size();
+  }
+  static std::size_t freedIn(const fs::path& map) {
+    std::size_t tiles = 0;
+    const ReadTransaction transaction = Environment::open(map, OpenMode::ReadOnly)->read();
+    transaction.forEachBlock(tables::kFreed, "", [&](std::string_view key, std::string_view) {
+      tiles += freedTile(transaction, tables::tileOfKey(key)) ? 1 : 0;
+    });
+    return tiles;
+  }
+  static double areaOf(const WayGraph& ways) {
+    return std::accumulate(ways.regions.begin(), ways.regions.end(), 0.0,
+                           [](double sum, const Region& region) { return sum + region.area_m2; });
+  }
+
+  inline static const Box kLeaves = boxFrom({2, 4, 0.05}, {6.2, 5.8, 1.5});
+  inline static rdf::ScratchFolder* folder = nullptr;
+  inline static MapInputs* inputs = nullptr;
+  inline static ScanSet* scans = nullptr;
+  inline static std::map<Visits, std::string> built;
+};
+
+TEST_F(GoneGround, IsThatOfAMapWithoutTheThing) {
+  const MapReader with(build(scansIn({0, 1}), "with.clx"));
+  const MapReader without(build(scansOf({folder->path() / "without"}), "without.clx"));
+  const double free = areaOf(without.ways()), found = areaOf(with.ways()), measured = areaOf(with.measuredWays());
+  EXPECT_EQ(areaOf(without.measuredWays()), free);
+  EXPECT_LT(measured, free - 1) << "its sides close cells";
+  EXPECT_NEAR(found, free, 0.25);
+}
+
+TEST_F(GoneGround, IsStoredOnlyWhereSomethingIsGone) {
+  EXPECT_EQ(freedIn(build(scansIn({0}), "map.clx")), 0U);
+  const fs::path gone = build(scansIn({0, 1}), "map.clx");
+  EXPECT_EQ(goneIn(gone), 1U);
+  EXPECT_GT(freedIn(gone), 0U);
+  const fs::path back = build(scansIn({0, 1, 2}), "map.clx");
+  EXPECT_EQ(goneIn(back), 0U);
+  EXPECT_EQ(freedIn(back), 0U);
+}
+
+TEST_F(GoneGround, FollowsWhatLeavesAndComesBack) {
+  for (const unsigned threads : {1U, 2U}) {
+    const ChangeParams params{.threads = threads, .max_window_share = 2};
+    const fs::path map = build(scansIn({0}), "map.clx");
+    const auto expect = [&](const Visits& visits, const ChangeReport& report) {
+      EXPECT_TRUE(contentOf(map) == fromScratch(visits)) << threads << " threads";
+      EXPECT_GT(report.local_commits, 0U);
+    };
+    expect({0, 1}, extendMap(map, scansIn({1}), params, silence()));
+    expect({0, 1, 2}, extendMap(map, scansIn({2}), params, silence()));
+    expect({0, 1}, retractScans(map, idsIn(2), params, silence()));
+    expect({1}, retractScans(map, idsIn(0), params, silence()));
+    expect({1, 2}, extendMap(map, scansIn({2}), params, silence()));
+    expect({0, 1, 2}, extendMap(map, scansIn({0}), params, silence()));
+    for (const std::size_t i : {std::size_t{0}, std::size_t{1}, std::size_t{2}})
+      retractScans(map, {idsIn(2)[i]}, params, silence());
+    EXPECT_TRUE(contentOf(map) == fromScratch({0, 1})) << threads << " threads";
+  }
+}
+
+TEST_F(GoneGround, IsTheSameInMergesAndBatches) {
+  std::vector<MapToMerge> maps;
+  for (const std::size_t visit : {std::size_t{1}, std::size_t{2}, std::size_t{0}}) {
+    maps.push_back({build(scansIn({visit}), "visit" + std::to_string(visit) + ".clx")});
+    if (maps.size() == 1) continue;
+    MergeParams params;
+    params.force = true;
+    mergeMaps(maps, folder->path() / "merged.clx", params, silence());
+    EXPECT_TRUE(contentOf(folder->path() / "merged.clx") ==
+                fromScratch(maps.size() == 2 ? Visits{1, 2} : Visits{0, 1, 2}));
+  }
+  MergeParams params;
+  params.force = true;
+  mergeMaps({maps[0], maps[2]}, folder->path() / "merged.clx", params, silence());
+  EXPECT_TRUE(contentOf(folder->path() / "merged.clx") == fromScratch({0, 1}));
+  EXPECT_TRUE(contentOf(build(scansIn({0, 1}), "map.clx", {.threads = 2, .batch_points = 1})) == fromScratch({0, 1}));
+}
+
+}  // namespace
+}  // namespace cluxel::mapping
