@@ -146,7 +146,6 @@ class FreedUpdate {
 
   std::map<TileKey, GonePoints> gonePoints(const TileSet& tiles) const {
     std::map<TileKey, GonePoints> found;
-    std::map<ContentHash, std::uint32_t> numbers;
     for (const TileKey& tile : tiles) {
       const auto objects = gone_.in.find(tile);
       if (objects == gone_.in.end()) continue;
@@ -157,8 +156,7 @@ class FreedUpdate {
       for (const std::uint32_t cluxel : cluxels.point_cluxel) {
         const std::uint32_t share = layer->share_of_cluxel[cluxel];
         const bool is_gone = share != kNoShare && objects->second.contains(layer->shares[share].object);
-        points.push_back(is_gone ? numbers.try_emplace(layer->shares[share].object, numbers.size()).first->second
-                                 : kNotGone);
+        points.push_back(is_gone ? 1 : 0);
       }
     }
     return found;

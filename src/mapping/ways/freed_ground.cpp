@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 #include <map>
-#include <set>
-#include <utility>
 
 namespace cluxel::mapping {
 
@@ -24,73 +24,72 @@ std::uint32_t cellOf(const TilePoints& tile, std::size_t point) {
   return static_cast<std::uint32_t>(at(tile.y[point]) * kEvenCellsPerTile + at(tile.x[point]));
 }
 
-/// Where gone things stood, and which scans measured them.
-class Stands {
+/// How high the ground reaches among low points: the lowest of few may be stray returns.
+double highestOfGround(std::vector<double>& heights) {
+  constexpr std::size_t enough = 8;
+  if (heights.size() < enough) return std::numeric_limits<double>::infinity();
+  const auto quartile = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 4);
+  std::nth_element(heights.begin(), quartile, heights.end());
+  return *quartile + perception::kLargestNoise_m;
+}
+
+/// The points of one tile of a ring, in which something stood that is gone.
+class FreedPoints {
  public:
-  Stands(const Ring<TilePoints>& points, const Ring<GroundTile>& ground, const Ring<GonePoints>& gone)
-      : ground_(ground) {
-    for (int place = 0; place < static_cast<int>(points.size()); ++place) {
-      const auto i = static_cast<std::size_t>(place);
-      if (points[i] != nullptr && gone[i] != nullptr) add(place, *points[i], *gone[i]);
+  FreedPoints(int place, const TilePoints& tile, const GonePoints& gone, const Ring<GroundTile>& ground)
+      : shift_(perception::ringShift(place)), tile_(tile), gone_(gone), ground_(ground) {
+    std::map<std::uint32_t, std::vector<double>> low_in;  // of cells where something stood
+    for (std::size_t point = 0; point < tile.size(); ++point)
+      if (gone[point] != 0 && above(point) <= perception::kThingTop_m) low_in[cellOf(tile, point)];
+    for (std::size_t point = 0; point < tile.size(); ++point) {
+      const auto heights = gone[point] != 0 ? low_in.end() : low_in.find(cellOf(tile, point));
+      if (heights == low_in.end()) continue;
+      if (const double height = above(point); std::abs(height) < perception::kThingBottom_m)
+        heights->second.push_back(height);
     }
+    for (auto& [cell, heights] : low_in) highest_in_.emplace(cell, highestOfGround(heights));
   }
 
-  bool standsIn(int place) const { return !things_in_[static_cast<std::size_t>(place)].empty(); }
-
-  /// Whether a point that is not of a gone thing counts.
-  bool counts(int place, const TilePoints& tile, std::size_t point) const {
-    const auto& things_in = things_in_[static_cast<std::size_t>(place)];
-    const auto found = things_in.find(cellOf(tile, point));
-    if (found == things_in.end() || above(place, tile, point) >= perception::kThingBottom_m) return true;
-    const scan::ScanId& scan = tile.scans[tile.scan[point]];
-    return std::none_of(found->second.begin(), found->second.end(),
-                        [&](std::uint32_t thing) { return scans_of_.at(thing).contains(scan); });
+  /// The places of the points that count.
+  TilePoints counted() const {
+    TilePoints counted;
+    counted.key = tile_.key;
+    for (std::size_t point = 0; point < tile_.size(); ++point) {
+      if (gone_[point] != 0 || isOfFoot(point)) continue;
+      counted.x.push_back(tile_.x[point]), counted.y.push_back(tile_.y[point]), counted.z.push_back(tile_.z[point]);
+    }
+    return counted;
   }
 
  private:
-  void add(int place, const TilePoints& tile, const GonePoints& gone) {
-    for (std::size_t point = 0; point < tile.size(); ++point) {
-      if (gone[point] == kNotGone) continue;
-      scans_of_[gone[point]].insert(tile.scans[tile.scan[point]]);
-      if (above(place, tile, point) <= perception::kThingTop_m)
-        things_in_[static_cast<std::size_t>(place)][cellOf(tile, point)].insert(gone[point]);
-    }
+  double above(std::size_t point) const {
+    return tile_.z[point] - groundHeightAt(ground_, tile_.x[point] + shift_.x(), tile_.y[point] + shift_.y());
   }
 
-  double above(int place, const TilePoints& tile, std::size_t point) const {
-    const Eigen::Vector3f shift = perception::ringShift(place);
-    return tile.z[point] - groundHeightAt(ground_, tile.x[point] + shift.x(), tile.y[point] + shift.y());
+  bool isOfFoot(std::size_t point) const {
+    const auto highest = highest_in_.find(cellOf(tile_, point));
+    if (highest == highest_in_.end()) return false;
+    const double height = above(point);
+    return height < perception::kThingBottom_m && height > highest->second;
   }
 
+  Eigen::Vector3f shift_;
+  const TilePoints& tile_;
+  const GonePoints& gone_;
   const Ring<GroundTile>& ground_;
-  std::array<std::map<std::uint32_t, std::set<std::uint32_t>>, 9> things_in_;  ///< by place in the ring, and cell
-  std::map<std::uint32_t, std::set<scan::ScanId>> scans_of_;                   ///< by thing
+  std::map<std::uint32_t, double> highest_in_;  ///< of the ground above its surface [m], by cell where something stood
 };
-
-/// The places of the points that count.
-TilePoints countedOf(int place, const TilePoints& tile, const GonePoints* gone, const Stands& stands) {
-  TilePoints counted;
-  counted.key = tile.key;
-  for (std::size_t point = 0; point < tile.size(); ++point) {
-    if (gone != nullptr && (*gone)[point] != kNotGone) continue;
-    if (!stands.counts(place, tile, point)) continue;
-    counted.x.push_back(tile.x[point]), counted.y.push_back(tile.y[point]), counted.z.push_back(tile.z[point]);
-  }
-  return counted;
-}
 
 }  // namespace
 
 perception::EvenTile freedGroundOf(const Ring<TilePoints>& points, const Ring<GroundTile>& ground,
                                    const Ring<GonePoints>& gone) {
-  const Stands stands(points, ground, gone);
   std::array<TilePoints, 9> counted;
   Ring<TilePoints> ring = points;
-  for (int place = 0; place < static_cast<int>(points.size()); ++place) {
-    const auto i = static_cast<std::size_t>(place);
-    if (points[i] == nullptr || (gone[i] == nullptr && !stands.standsIn(place))) continue;
-    counted[i] = countedOf(place, *points[i], gone[i], stands);
-    ring[i] = &counted[i];
+  for (std::size_t place = 0; place < points.size(); ++place) {
+    if (points[place] == nullptr || gone[place] == nullptr) continue;
+    counted[place] = FreedPoints(static_cast<int>(place), *points[place], *gone[place], ground).counted();
+    ring[place] = &counted[place];
   }
   return evenGroundOf(ring, ground);
 }

@@ -9,15 +9,13 @@
 
 namespace cluxel::mapping {
 
-/// By point of a tile: the number of the gone thing that it is of, or kNotGone. A thing has one number in all tiles of
-/// a ring.
-using GonePoints = std::vector<std::uint32_t>;
-inline constexpr std::uint32_t kNotGone = 0xFFFFFFFFU;
+/// By point of a tile: 1 when it is of a thing that is gone.
+using GonePoints = std::vector<std::uint8_t>;
 
 /// evenGroundOf() without the points of gone things. In a cell with such points up to perception::kThingTop_m above the
-/// ground the low points of the scans that measured the thing do not count either: ground cluxels hold points of its
-/// foot, and the scan saw little ground there. `gone` is null where no thing of the tile is gone. Cost: that of
-/// evenGroundOf(), and of copies of tiles with gone things.
+/// ground the ground holds points of their feet, too: of eight low points or more those do not count that lie more than
+/// perception::kLargestNoise_m above their lower quartile. `gone` is null where nothing of the tile is gone. Cost: that
+/// of evenGroundOf(), and of copies of tiles with gone things.
 perception::EvenTile freedGroundOf(const perception::Ring<perception::TilePoints>& points,
                                    const perception::Ring<perception::GroundTile>& ground,
                                    const perception::Ring<GonePoints>& gone);
