@@ -127,7 +127,9 @@ TEST_F(GoneGround, FollowsWhatLeavesAndComesBack) {
     const fs::path map = build(scansIn({0}), "map.clx");
     const auto expect = [&](const Visits& visits, const ChangeReport& report) {
       EXPECT_TRUE(contentOf(map) == fromScratch(visits)) << threads << " threads";
-      if (threads == 1) EXPECT_GT(report.local_commits, 0U);
+      if (threads == 1) {
+        EXPECT_GT(report.local_commits, 0U);
+      }
     };
     expect({0, 1}, extendMap(map, scansIn({1}), params, silence()));
     expect({0, 1, 2}, extendMap(map, scansIn({2}), params, silence()));
