@@ -128,7 +128,8 @@ class TileStages {
   perception::TileSet read_as_before_;
   OutputChanges changes_;
   /// Tiles of which the even ground changed, came or went since the stages of ways were brought up to date.
-  perception::TileSet changed_even_, changed_outputs_;
+  perception::TileSet changed_even_;
+  perception::TileSet changed_outputs_;  ///< as takeChangedOutputs() returns them
   std::map<perception::TileKey, perception::EvenTile> even_;  ///< of those that are at hand
 };
 

@@ -26,7 +26,8 @@ struct ToldWay {
 /// may have told other facts. Throws Error (StoreUnavailable) when the block is malformed.
 std::optional<std::vector<ToldWay>> storedToldWays(const rdf::ReadTransaction& transaction);
 void storeToldWays(rdf::WriteTransaction& transaction, const std::vector<ToldWay>& ways);
-/// To be called by each other commit that changes the map: it leaves the facts about ways as they are.
+/// To be called by each other commit that changes the map: it leaves the facts about ways as they are, and the freed
+/// ground that they follow from.
 void keepToldWays(rdf::WriteTransaction& transaction);
 
 }  // namespace cluxel::mapping
