@@ -129,7 +129,7 @@ class TileStages {
   OutputChanges changes_;
   /// Tiles of which the even ground changed, came or went since the stages of ways were brought up to date.
   perception::TileSet changed_even_;
-  perception::TileSet changed_outputs_;  ///< as takeChangedOutputs() returns them
+  perception::TileSet changed_outputs_;                       ///< as takeChangedOutputs() returns them
   std::map<perception::TileKey, perception::EvenTile> even_;  ///< of those that are at hand
 };
 
