@@ -97,6 +97,8 @@ ContentHash MapInputs::hash() const {
   hasher.add(kStagesVersion);
   hasher.addText(model.text).add(perception::hashOf(params)).addText(crs);
   for (int axis = 0; axis < 3; ++axis) hasher.add(map_origin[axis]);
+  // Earlier versions had other tiles where the origin does not lie at whole ones.
+  if (tileGrid() != perception::TileGrid()) hasher.addText("tiles of the outer frame");
   return hasher.finish();
 }
 

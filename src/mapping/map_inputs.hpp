@@ -63,6 +63,7 @@ struct MapInputs {
   Eigen::Vector3d map_origin = Eigen::Vector3d::Zero();  ///< of the map frame in the outer frame [m]
   std::string crs;                                       ///< of the outer frame, as given; may be empty
 
+  perception::TileGrid tileGrid() const { return perception::TileGrid(map_origin); }
   /// Two maps with the same hash and the same scans are equal.
   ContentHash hash() const;
 };

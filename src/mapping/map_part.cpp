@@ -9,6 +9,7 @@
 #include "mapping/clouds/scan_store.hpp"
 #include "mapping/layers/primitive_tiles.hpp"
 #include "mapping/layers/stored_layers.hpp"
+#include "mapping/stored_grid.hpp"
 #include "mapping/window/likely_tiles.hpp"
 #include "mapping/window/map_window.hpp"
 
@@ -106,15 +107,16 @@ perception::TileSet tilesOfNearObjects(const rdf::ReadTransaction& transaction, 
   std::vector<TileLayer> layers;
   for (const perception::TileKey& tile : perception::grown(tiles))
     if (std::optional<TileLayer> layer = storedLayer(transaction, tile)) layers.push_back(*std::move(layer));
+  const perception::TileGrid grid = storedGrid(transaction);
   Eigen::AlignedBox2d box;
   for (const TileLayer& layer : layers)
     for (const TileLayer::PrimitiveHere& here : layer.primitives)
-      if (thing.primitives.contains(here.id)) box.extend(boxInMap(here, layer.key));
+      if (thing.primitives.contains(here.id)) box.extend(boxInMap(here, grid.cornerOf(layer.key)));
   std::set<ContentHash> near;
   for (const TileLayer& layer : layers)
     for (const TileLayer::Share& share : layer.shares)
       if (std::any_of(share.components.begin(), share.components.end(), [&](const std::uint32_t component) {
-            return box.exteriorDistance(boxInMap(layer.primitives[component], layer.key)) <= near_m;
+            return box.exteriorDistance(boxInMap(layer.primitives[component], grid.cornerOf(layer.key))) <= near_m;
           }))
         near.insert(share.object);
   perception::TileSet of_near;

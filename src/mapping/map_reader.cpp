@@ -272,13 +272,14 @@ PointAnswers MapReader::answersFor(const Cloud& cloud) const {
   const perception::Scene& all = scene();
   const perception::ThinParams& thin = impl_->model->perception.thin;
   const scan::ScanPoints points = pointsOf(cloud.id);
+  const perception::TileGrid& grid = stages.grid();
   std::map<perception::TileKey, perception::RepresentativeFinder> finders;
   PointAnswers answers;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Eigen::Vector3d p_map = scan::toMap(cloud.T_map_sensor, {points.x[i], points.y[i], points.z[i]});
-    const perception::TileKey tile = perception::tileOf(p_map);
+    const perception::TileKey tile = grid.tileOf(p_map);
     const auto finder = finders.try_emplace(tile, stages.points().at(tile), thin).first;
-    const std::uint32_t kept = finder->second.find(localPoint(tile, p_map));
+    const std::uint32_t kept = finder->second.find(localPoint(grid, tile, p_map));
     const std::uint32_t cluxel = impl_->first_cluxel.at(tile) + stages.cluxels().at(tile).point_cluxel.at(kept);
     answers.cluxel.push_back(cluxel);
     answers.label.push_back(static_cast<std::uint8_t>(all.cluxels.label[cluxel]));

@@ -25,10 +25,10 @@ using perception::TileSet;
 }
 
 /// The tiles cover this in plan view [m].
-Eigen::AlignedBox2d areaOf(const TileSet& tiles) {
+Eigen::AlignedBox2d areaOf(const TileSet& tiles, const perception::TileGrid& grid) {
   Eigen::AlignedBox2d area;
   for (const TileKey& tile : tiles) {
-    const Eigen::Vector2d corner = perception::cornerOf(tile).head<2>();
+    const Eigen::Vector2d corner = grid.cornerOf(tile).head<2>();
     area.extend(corner), area.extend(Eigen::Vector2d(corner + Eigen::Vector2d::Constant(perception::kTileSize_m)));
   }
   return area;
@@ -130,15 +130,16 @@ void MapRegions::readPoints(const MapRegion& region) {
 
 void MapRegions::forEachPoint(const MapRegion& region, const Cloud& cloud, const PointVisit& visit) {
   const Eigen::AlignedBox2d measured(cloud.min.head<2>(), cloud.max.head<2>());
-  if (!areaOf(region.tiles).intersects(measured)) return;
+  const perception::TileGrid& grid = region.scene.cluxels.grid;
+  if (!areaOf(region.tiles, grid).intersects(measured)) return;
   if (!points_) readPoints(region);
   const scan::ScanPoints points = map_.pointsOf(cloud.id);
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Eigen::Vector3d p_map = scan::toMap(cloud.T_map_sensor, {points.x[i], points.y[i], points.z[i]});
-    const TileKey key = perception::tileOf(p_map);
+    const TileKey key = grid.tileOf(p_map);
     const auto tile = points_->tiles.find(key);
     if (tile == points_->tiles.end()) continue;
-    const std::uint32_t kept = tile->second.finder.find(perception::localPoint(key, p_map));
+    const std::uint32_t kept = tile->second.finder.find(perception::localPoint(grid, key, p_map));
     visit(p_map, tile->second.first + tile->second.cluxels->point_cluxel.at(kept), i);
   }
 }

@@ -318,18 +318,22 @@ TileSet runStages(TileSegments segments, const TileLabeller& labeller, const Sce
   return run.changed();
 }
 
-TileOutputs perceive(std::span<const scan::Scan> scans, const PerceptionParams& params, unsigned threads) {
+TileOutputs perceive(std::span<const scan::Scan> scans, const PerceptionParams& params, unsigned threads,
+                     const TileGrid& grid) {
   checkRanges(params);
   TileOutputs outputs;
+  outputs.grid = grid;
   const RunOptions options{.threads = threads};
-  Run(params, outputs, options, Axis::X).toFeatures(segmentsOf(scans));
+  Run(params, outputs, options, Axis::X).toFeatures(segmentsOf(scans, grid));
   return outputs;
 }
 
-Scene sceneOf(std::span<const scan::Scan> scans, const LabelModel& model, const SceneParams& params, unsigned threads) {
+Scene sceneOf(std::span<const scan::Scan> scans, const LabelModel& model, const SceneParams& params, unsigned threads,
+              const TileGrid& grid) {
   checkRanges(model.perception);
   TileOutputs outputs;
-  runStages(segmentsOf(scans), TileLabeller(model), params, outputs, {.threads = threads});
+  outputs.grid = grid;
+  runStages(segmentsOf(scans, grid), TileLabeller(model), params, outputs, {.threads = threads});
   return assembleScene(outputs, params.relation);
 }
 

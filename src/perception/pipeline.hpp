@@ -38,7 +38,7 @@ inline OutputChange changeOf(Stage stage, std::string_view before, std::string_v
 }
 
 /// Cuts scans into tiles. Errors and cost as for splitScan().
-TileSegments segmentsOf(std::span<const scan::Scan> scans);
+TileSegments segmentsOf(std::span<const scan::Scan> scans, const TileGrid& grid);
 
 /// Keeps outputs beyond a run, so that a later run recomputes only what has changed. Called from one thread.
 class OutputStore {
@@ -97,9 +97,11 @@ TileSet runStages(PointBands& bands, const TileLabeller& labeller, const ScenePa
                   const RunOptions& run);
 
 /// The same up to the features, in memory. The scans may come in any order.
-TileOutputs perceive(std::span<const scan::Scan> scans, const PerceptionParams& params, unsigned threads);
+TileOutputs perceive(std::span<const scan::Scan> scans, const PerceptionParams& params, unsigned threads,
+                     const TileGrid& grid = {});
 
 /// The scene of some scans, in memory. The scans may come in any order.
-Scene sceneOf(std::span<const scan::Scan> scans, const LabelModel& model, const SceneParams& params, unsigned threads);
+Scene sceneOf(std::span<const scan::Scan> scans, const LabelModel& model, const SceneParams& params, unsigned threads,
+              const TileGrid& grid = {});
 
 }  // namespace cluxel::perception

@@ -12,10 +12,10 @@ std::string_view nameOf(Stage stage) {
   return kNames[static_cast<std::size_t>(stage)];
 }
 
-TileSegments segmentsOf(std::span<const scan::Scan> scans) {
+TileSegments segmentsOf(std::span<const scan::Scan> scans, const TileGrid& grid) {
   TileSegments segments;
   for (const scan::Scan& scan : scans)
-    for (auto& [key, segment] : splitScan(scan)) segments[key].push_back(std::move(segment));
+    for (auto& [key, segment] : splitScan(scan, grid)) segments[key].push_back(std::move(segment));
   return segments;
 }
 

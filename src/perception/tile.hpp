@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The fixed tiles of the map frame: the unit of computing, storing and invalidating.
+// The fixed tiles of a map: the unit of computing, storing and invalidating.
 #pragma once
 
 #include <array>
@@ -21,14 +21,56 @@ struct TileKey {
   auto operator<=>(const TileKey&) const = default;
 };
 
-inline TileKey tileOf(const Eigen::Vector3d& p_map) {
-  return {static_cast<std::int32_t>(std::floor(p_map.x() / kTileSize_m)),
-          static_cast<std::int32_t>(std::floor(p_map.y() / kTileSize_m))};
-}
+/// Where the tiles of a map lie. Their borders are at whole multiples of the tile size in the outer frame, and so is
+/// the height from which slices are counted: another origin of the map frame moves them with the points.
+class TileGrid {
+ public:
+  /// The map frame is the outer frame, or its origin lies at whole tiles.
+  TileGrid() = default;
+  /// `map_origin`: of the map frame in the outer frame [m].
+  explicit TileGrid(const Eigen::Vector3d& map_origin);
+  static TileGrid at(const Eigen::Vector3d& corner) {
+    TileGrid grid;
+    grid.corner_ = corner;
+    return grid;
+  }
 
-/// The corner with the smallest x and y, at z = 0, in the map frame. Local floats of a tile are relative to it.
-inline Eigen::Vector3d cornerOf(const TileKey& key) {
-  return {key.x * kTileSize_m, key.y * kTileSize_m, 0.0};
+  /// The corner of tile (0, 0), which holds the map's origin [m, map]. Zero when the origin lies at whole tiles.
+  const Eigen::Vector3d& corner() const { return corner_; }
+  bool operator==(const TileGrid& other) const { return corner_ == other.corner_; }
+
+  /// A point of the map relative to corner() [m]. Unless that is zero, it is rounded to 15 nm: scanners and files
+  /// round coordinates, so that many lie on borders of tiles and voxels, and must stay there.
+  Eigen::Vector3d fromMap(const Eigen::Vector3d& p_map) const {
+    if (corner_.isZero(0)) return p_map;
+    // Adding it to a smaller number leaves no bits below the step.
+    constexpr double kRounding_m = 1.5 * (1 << 26), kLargest_m = 1 << 24;
+    const auto rounded = [](double value_m) {
+      return std::abs(value_m) < kLargest_m ? (value_m + kRounding_m) - kRounding_m : value_m;
+    };
+    const Eigen::Vector3d p = p_map - corner_;
+    return {rounded(p.x()), rounded(p.y()), rounded(p.z())};
+  }
+  TileKey tileOf(const Eigen::Vector3d& p_map) const {
+    const Eigen::Vector3d p = fromMap(p_map);
+    return {static_cast<std::int32_t>(std::floor(p.x() / kTileSize_m)),
+            static_cast<std::int32_t>(std::floor(p.y() / kTileSize_m))};
+  }
+  /// The corner of a tile with the smallest x and y, at the height from which slices are counted [m, map]. Local floats
+  /// of the tile are relative to it.
+  Eigen::Vector3d cornerOf(const TileKey& key) const {
+    return {corner_.x() + key.x * kTileSize_m, corner_.y() + key.y * kTileSize_m, corner_.z()};
+  }
+
+ private:
+  Eigen::Vector3d corner_ = Eigen::Vector3d::Zero();
+};
+
+inline TileGrid::TileGrid(const Eigen::Vector3d& map_origin) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const double beyond_m = map_origin[axis] - kTileSize_m * std::floor(map_origin[axis] / kTileSize_m);
+    if (beyond_m > 0 && beyond_m < kTileSize_m) corner_[axis] = -beyond_m;
+  }
 }
 
 /// The tile itself and its 8 neighbours, row by row from (x-1, y-1); entry 4 is the tile itself.

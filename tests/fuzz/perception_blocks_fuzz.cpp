@@ -61,7 +61,7 @@ Blocks validBlocks() {
 
 TilePoints filled(std::string_view bytes) {
   TilePoints tile = tilePointsFromBytes(bytes);
-  PointsFromScans from_scans;
+  PointsFromScans from_scans({});
   from_scans.add(tile);
   from_scans.fill(smallScan());
   return tile;

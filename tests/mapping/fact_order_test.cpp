@@ -55,15 +55,15 @@ TEST(FactOrder, GivesNeighbouringThingsNeighbouringIds) {
   for (const Primitive& primitive : map.scene().primitives) {
     const auto id = map.quads().idOf(Term::iri(iriOfPrimitive(primitive.id)));
     ASSERT_TRUE(id);
-    primitives.emplace(*id, tileOf(primitive.centroid));
-    tiles.insert(tileOf(primitive.centroid));
+    primitives.emplace(*id, TileGrid().tileOf(primitive.centroid));
+    tiles.insert(TileGrid().tileOf(primitive.centroid));
   }
   for (const std::size_t number : objectsByPlace(map.scene(), map.objects())) {
     const SemanticObject& object = map.objects()[number];
     const auto id = map.quads().idOf(Term::iri(iriOfObject(object.id)));
     ASSERT_TRUE(id);
     if (!object.is_class_wide)
-      objects.emplace(*id, tileOf(map.scene().primitives[object.parts.at(0).primitives.at(0)].centroid));
+      objects.emplace(*id, TileGrid().tileOf(map.scene().primitives[object.parts.at(0).primitives.at(0)].centroid));
   }
   ASSERT_GT(tiles.size(), 20U);
   ASSERT_GT(primitives.size(), 10 * tiles.size());

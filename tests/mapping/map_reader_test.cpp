@@ -88,9 +88,9 @@ TEST_F(MapReading, AnswersEveryPointAsBruteForceDoes) {
     for (std::size_t i = 7; i < scans[s].points.size(); i += 97) {
       const Eigen::Vector3f p(scans[s].points.x[i], scans[s].points.y[i], scans[s].points.z[i]);
       const Eigen::Vector3d p_map = toMap(scans[s].T_map_sensor, p);
-      const TileKey key = tileOf(p_map);
+      const TileKey key = TileGrid().tileOf(p_map);
       const std::uint32_t kept =
-          nearestInVoxel(tiles.points.at(key), localPoint(key, p_map), model.perception.thin.voxel_m);
+          nearestInVoxel(tiles.points.at(key), localPoint({}, key, p_map), model.perception.thin.voxel_m);
       ASSERT_NE(kept, 0xffffffffU) << "point " << i << " has no kept point in its voxel";
       EXPECT_EQ(answers.cluxel[i], number.at({key, tiles.cluxels.at(key).point_cluxel[kept]})) << "point " << i;
       EXPECT_EQ(answers.label[i], static_cast<std::uint8_t>(scene.cluxels.label[answers.cluxel[i]]));

@@ -88,7 +88,7 @@ TEST_F(MapRegionsTest, GiveEachPointTheCluxelThatTheMapGivesIt) {
     const MapRegion region = regions.read(i);
     for (const Cloud& cloud : map->clouds())
       regions.forEachPoint(region, cloud, [&](const Eigen::Vector3d& p_map, std::uint32_t cluxel, std::size_t point) {
-        EXPECT_TRUE(region.tiles.contains(perception::tileOf(p_map)));
+        EXPECT_TRUE(region.tiles.contains(perception::TileGrid().tileOf(p_map)));
         EXPECT_TRUE(got[cloud.id.hex()].emplace(point, region.number[cluxel]).second) << "was visited before";
       });
   }

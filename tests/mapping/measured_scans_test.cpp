@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a map holds follows from what was measured: not from clocks, nor from where the map's origin lies.
+// What a map holds follows from what was measured: not from clocks.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -71,28 +71,12 @@ std::multiset<std::string> withoutTimes(const std::string& text) {
   return rest;
 }
 
-std::set<std::string> namesOfObjects(const MapReader& map) {
-  std::set<std::string> names;
-  for (const SemanticObject& object : map.objects()) names.insert(object.class_iri + " " + object.id.hex());
-  return names;
-}
-
 TEST_F(MeasuredScans, AShiftedClockChangesNothingButTheTimes) {
   const std::string then = canonicalText(built(manifest("", 1.6e9))),
                     later = canonicalText(built(manifest("", 1.6e9 + 7)));
   EXPECT_NE(then, later) << "the times are facts";
   EXPECT_TRUE(withoutTimes(then) == withoutTimes(later));
   EXPECT_NE(then.find("resultTime"), std::string::npos);
-}
-
-/// By whole tiles: another place of the tiles' borders would cut the points in other ways.
-TEST_F(MeasuredScans, AnOriginShiftedByWholeTilesKeepsEveryObject) {
-  const fs::path here = built(manifest("frame: outer\nmap_origin: [0, 0, 0]\n", 0));
-  const fs::path there = built(manifest("frame: outer\nmap_origin: [1600, -3200, 0]\n", 0));
-  const MapReader a(here), b(there);
-  EXPECT_GT(a.summary().objects, 5U);
-  EXPECT_EQ(a.summary().objects_by_class, b.summary().objects_by_class);
-  EXPECT_EQ(namesOfObjects(a), namesOfObjects(b));
 }
 
 TEST_F(MeasuredScans, OfTwoThatAreAlikeTheLaterTimeStaysInAnyOrder) {

@@ -92,7 +92,7 @@ Told told(const World& world) {
       cluxels.name.push_back({key, i});
       cluxels.component.push_back(tile.cluxels[i].component);
       cluxels.primitive.push_back(number.at(tile.primitive_of[tile.cluxels[i].component]));
-      cluxels.low_corner.push_back(cornerOf(key) + Eigen::Vector3d(0.5 * i, 1, 2));
+      cluxels.low_corner.push_back(TileGrid().cornerOf(key) + Eigen::Vector3d(0.5 * i, 1, 2));
       cluxels.extent.emplace_back(0.25F, 0.5F, 0.75F);
     }
   addObjects(world, number, told);

@@ -38,7 +38,7 @@ struct MadeGround {
                const std::function<double(double, double)>& smooth) {
     TilePoints& tile = points[key];
     tile.key = key;
-    const Eigen::Vector3d corner = cornerOf(key);
+    const Eigen::Vector3d corner = TileGrid().cornerOf(key);
     for (int j = 0; j < 266; ++j)
       for (int i = 0; i < 266; ++i) {
         const double x = (i + 0.5) * 0.06, y = (j + 0.5) * 0.06;
@@ -151,7 +151,7 @@ TEST(Ways, AThingOnAPathMakesNoRing) {
   MadeGround made = madeOf([](double x, double) { return std::abs(x + 1) < 2; });
   for (auto& [key, tile] : made.points)
     for (std::size_t i = 0; i < tile.size(); ++i) {
-      const Eigen::Vector2d p = cornerOf(key).head<2>() + Eigen::Vector2d(tile.x[i], tile.y[i]);
+      const Eigen::Vector2d p = TileGrid().cornerOf(key).head<2>() + Eigen::Vector2d(tile.x[i], tile.y[i]);
       if ((p - Eigen::Vector2d(-1, 5)).norm() < 0.6) tile.z[i] += 1;
     }
   const WayGraph graph = made.ways();

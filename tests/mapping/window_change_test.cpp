@@ -22,7 +22,7 @@ MapWindow thingBesideACutWall() {
   scene.primitives.resize(2);
   for (PrimitiveIndex i = 0; i < 2; ++i) {
     const TileKey tile{static_cast<std::int32_t>(i), 0};
-    const Eigen::Vector3d corner = perception::cornerOf(tile);
+    const Eigen::Vector3d corner = perception::TileGrid().cornerOf(tile);
     scene.cluxels.name.push_back({tile, 0});
     scene.cluxels.low_corner.push_back(corner);
     scene.cluxels.extent.emplace_back(0.2F, 0.2F, 0.2F);

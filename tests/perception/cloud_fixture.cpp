@@ -83,7 +83,7 @@ std::vector<Scan> splitAtRandom(const std::vector<Eigen::Vector3d>& points, std:
 std::map<TileKey, TilePoints> tilesOf(const std::vector<Scan>& scans, const ThinParams& params) {
   std::map<TileKey, std::vector<ScanSegment>> segments;
   for (const auto& scan : scans)
-    for (auto& [key, segment] : splitScan(scan)) segments[key].push_back(segment);
+    for (auto& [key, segment] : splitScan(scan, {})) segments[key].push_back(segment);
   std::map<TileKey, TilePoints> tiles;
   for (const auto& [key, parts] : segments) {
     std::vector<const ScanSegment*> pointers;
@@ -111,7 +111,7 @@ std::vector<double> meanFeatures(const std::vector<Eigen::Vector3d>& points, con
   std::size_t count = 0;
   for (const auto& [key, tile] : tiles.features)
     for (std::size_t c = 0; c < tile.size(); ++c) {
-      if ((tile.center[c].cast<double>() + cornerOf(key) - centre).norm() > within_m) continue;
+      if ((tile.center[c].cast<double>() + TileGrid().cornerOf(key) - centre).norm() > within_m) continue;
       ++count;
       for (std::size_t i = 0; i < columns; ++i) mean[i] += tile.features[c * columns + i];
     }

@@ -36,7 +36,7 @@ HandLabelled labelled(const std::vector<Scan>& scans, const LabelOf& label_of) {
     LabelTile tile;
     tile.key = key;
     for (std::size_t c = 0; c < cluxels.size(); ++c) {
-      const auto label = label_of(cornerOf(key) + cluxels.own[c].mean.cast<double>());
+      const auto label = label_of(TileGrid().cornerOf(key) + cluxels.own[c].mean.cast<double>());
       tile.label.push_back(static_cast<std::uint8_t>(label));
       tile.probability.push_back({});
       tile.probability.back()[static_cast<std::size_t>(label)] = 1.0F;

@@ -27,8 +27,8 @@ struct Ground {
   TileOutputs tiles;
   explicit Ground(const std::vector<Scan>& scans) : tiles(perceive(scans, {}, 1)) {}
   double at(const Eigen::Vector3d& p_map) const {
-    const TileKey key = tileOf(p_map);
-    const Eigen::Vector3d p = p_map - cornerOf(key);
+    const TileKey key = TileGrid().tileOf(p_map);
+    const Eigen::Vector3d p = p_map - TileGrid().cornerOf(key);
     return groundHeightAt(ringIn(tiles.ground, key), p.x(), p.y());
   }
 };
@@ -102,8 +102,8 @@ TEST(GroundTile, AgreesAtABorderWhicheverTileIsAsked) {
   const CloudMaker maker = terrainCloud(slope, 30000);
   const Ground ground({scanOf(maker.points())});
   for (double y = -14; y < 14; y += 0.37) {
-    const TileKey left = tileOf({-0.01, y, 0}), right = tileOf({0.01, y, 0});
-    const double local_y = y - cornerOf(left).y();
+    const TileKey left = TileGrid().tileOf({-0.01, y, 0}), right = TileGrid().tileOf({0.01, y, 0});
+    const double local_y = y - TileGrid().cornerOf(left).y();
     EXPECT_NEAR(groundHeightAt(ringIn(ground.tiles.ground, left), kTileSize_m, local_y),
                 groundHeightAt(ringIn(ground.tiles.ground, right), 0.0, local_y), 1e-9);
   }

@@ -108,8 +108,8 @@ TEST(EvenTile, CellsAreTheSameWhereverTilesCutTheGround) {
     for (int i = -32; i < 32; ++i) {
       const auto at = [&](const std::map<TileKey, EvenTile>& tiles, double shift_m) {
         const double x = kEvenCell_m * (i + 0.5) + shift_m, y = kEvenCell_m * (j + 0.5) + shift_m;
-        const TileKey key = tileOf({x, y, 0});
-        const Eigen::Vector3d local = Eigen::Vector3d(x, y, 0) - cornerOf(key);
+        const TileKey key = TileGrid().tileOf({x, y, 0});
+        const Eigen::Vector3d local = Eigen::Vector3d(x, y, 0) - TileGrid().cornerOf(key);
         const auto cell = static_cast<std::size_t>(static_cast<int>(local.y() / kEvenCell_m) * kEvenCellsPerTile +
                                                    static_cast<int>(local.x() / kEvenCell_m));
         return tiles.at(key).distance2[cell];

@@ -34,7 +34,7 @@ std::vector<Scan> crowdedScans(std::uint32_t seed) {
 /// The bytes of a tile that was read from `bytes` and filled from the scans.
 std::string filled(const std::string& bytes, const std::vector<Scan>& scans) {
   TilePoints tile = tilePointsFromBytes(bytes);
-  PointsFromScans from_scans;
+  PointsFromScans from_scans({});
   from_scans.add(tile);
   for (const Scan& scan : scans) from_scans.fill(scan);
   return toBytes(tile);
@@ -45,13 +45,13 @@ TEST(TilePoints, EveryPointOfAScanLiesInExactlyOneSegmentAndNearItsMapPlace) {
   scan.T_map_sensor.translate(Eigen::Vector3d(1000.3, -2000.7, 50));
   scan.T_map_sensor.rotate(Eigen::AngleAxisd(0.7, Eigen::Vector3d(0.1, 0.2, 1).normalized()));
   std::vector<int> seen(scan.points.size());
-  for (const auto& [key, segment] : splitScan(scan))
+  for (const auto& [key, segment] : splitScan(scan, {}))
     for (std::size_t i = 0; i < segment.size(); ++i) {
       const std::uint32_t point = segment.point[i];
       ++seen[point];
       const Eigen::Vector3d p_map =
           toMap(scan.T_map_sensor, {scan.points.x[point], scan.points.y[point], scan.points.z[point]});
-      const Eigen::Vector3d back = cornerOf(key) + Eigen::Vector3d(segment.x[i], segment.y[i], segment.z[i]);
+      const Eigen::Vector3d back = TileGrid().cornerOf(key) + Eigen::Vector3d(segment.x[i], segment.y[i], segment.z[i]);
       EXPECT_LT((p_map - back).norm(), 1e-5);
       EXPECT_TRUE(segment.x[i] >= 0 && segment.x[i] < 16 && segment.y[i] >= 0 && segment.y[i] < 16);
     }
@@ -66,7 +66,7 @@ TEST(TilePoints, PointsJustBelowZeroStayInTheirTile) {
                       {0.0F, 0.0F, 0.5F},
                       {-1e-6F, -1e-6F, 0.5F}});
   std::size_t points = 0;
-  for (const auto& [key, segment] : splitScan(scan)) {
+  for (const auto& [key, segment] : splitScan(scan, {})) {
     points += segment.size();
     EXPECT_EQ(filled(toBytes(thin(key, std::array{&segment}, {})), {scan}),
               toBytes(thin(key, std::array{&segment}, {})))
@@ -83,7 +83,7 @@ TEST(TilePoints, RefusesAPointThatIsNoNumberNamingIt) {
   Scan scan = scanOf({{0, 0, 0}, {1, 2, 3}});
   scan.points.y[1] = std::numeric_limits<float>::quiet_NaN();
   try {
-    splitScan(scan);
+    splitScan(scan, {});
     FAIL() << "took a NaN";
   } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what()).find("point 1"), std::string::npos) << error.what();
@@ -93,7 +93,7 @@ TEST(TilePoints, RefusesAPointThatIsNoNumberNamingIt) {
 TEST(TilePoints, RefusesAPoseThatThrowsPointsOutOfTheMap) {
   Scan scan = scanOf({{0, 0, 0}});
   scan.T_map_sensor.translate(Eigen::Vector3d(1e9, 0, 0));
-  EXPECT_THROW(splitScan(scan), InputError);
+  EXPECT_THROW(splitScan(scan, {}), InputError);
 }
 
 TEST(TilePoints, OrderOfScansDoesNotMatter) {
@@ -151,7 +151,7 @@ TEST(TilePoints, EveryPointFindsARepresentativeAndAKeptPointFindsItself) {
   const ThinParams params{.voxel_m = 0.05, .keep = 1};
   const auto tiles = tilesOf(scans, params);
   for (const auto& scan : scans)
-    for (const auto& [key, segment] : splitScan(scan)) {
+    for (const auto& [key, segment] : splitScan(scan, {})) {
       const TilePoints& tile = tiles.at(key);
       const RepresentativeFinder finder(tile, params);
       for (std::size_t i = 0; i < segment.size(); ++i) {

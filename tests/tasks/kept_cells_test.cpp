@@ -26,7 +26,7 @@ std::vector<PointCell> boardIn(const perception::TileKey& tile, int from, int to
   for (int x = from; x < to; ++x)
     for (int z = 0; z < 4; ++z) {
       const Eigen::Vector3d place(0.1 * x + 0.05, 5, 0.1 * z + 1);
-      if (perception::tileOf(place) != tile) continue;
+      if (perception::TileGrid().tileOf(place) != tile) continue;
       PointCell cell{.key = {tile, static_cast<std::uint64_t>(4 * x + z)}, .place = place, .scans = 31};
       cell.other.through_scans = 31;
       cells.push_back(cell);
@@ -81,7 +81,7 @@ std::vector<PointCell> randomCells(unsigned seed) {
       for (int z = 0; z < 4; ++z) {
         if (chance(0.3)) continue;
         const Eigen::Vector3d place(middle_m + 0.1 * x + 0.05, 5 + 0.1 * y, 1 + 0.1 * z);
-        PointCell cell{.key = {perception::tileOf(place), cells.size()}, .place = place, .scans = 31};
+        PointCell cell{.key = {perception::TileGrid().tileOf(place), cells.size()}, .place = place, .scans = 31};
         cell.is_shared = (x / 7 + y / 6) % 2 == 0 ? chance(0.8) : chance(0.05);
         cell.own = {.hit_scans = 31, .rays = {.ended = 9, .passed = 1}};
         cell.other.through_scans = chance(0.5) ? 31 : 3;

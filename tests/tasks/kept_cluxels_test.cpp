@@ -45,7 +45,7 @@ Field fieldOf(const Change& change) {
     const auto [x, y] = places[i];
     const Eigen::Vector3d corner(kStep_m * x, kStep_m * y, 1);
     const Eigen::Vector3d center = corner + Eigen::Vector3d::Constant(kStep_m / 2);
-    field.all.cluxels.name.push_back({perception::tileOf(center), i});
+    field.all.cluxels.name.push_back({perception::TileGrid().tileOf(center), i});
     field.all.cluxels.center.push_back(center), field.all.cluxels.low_corner.push_back(corner);
     field.all.places.push_back({center, {}, {}});
     field.all.cluxels.extent.push_back(Eigen::Vector3f::Constant(static_cast<float>(kStep_m)));

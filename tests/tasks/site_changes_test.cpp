@@ -227,7 +227,7 @@ TEST_F(SiteChangesTest, TheAnswerDoesNotDependOnHowTheMapIsCutIntoRegions) {
 
 TEST_F(SiteChangesTest, ChangesAcrossTheBordersOfRegionsStayWhole) {
   const auto crosses = [](const Eigen::AlignedBox3d& box) {
-    return perception::tileOf(box.min()) != perception::tileOf(box.max());
+    return perception::TileGrid().tileOf(box.min()) != perception::TileGrid().tileOf(box.max());
   };
   std::size_t across = 0;
   for (const auto& [is_new, box] : reported(changesIn(*map, {}, 1, 1))) across += crosses(box) ? 1 : 0;

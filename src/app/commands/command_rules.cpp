@@ -144,7 +144,8 @@ perception::Scene sceneFor(const rules::SceneRequest& request, const RulesOption
   const scan::ScanSet scans = scan::ScanSet::open({request.path}, {}, session.console);
   std::vector<scan::Scan> loaded;
   for (std::size_t i = 0; i < scans.size(); ++i) loaded.push_back(scans.load(i));
-  return perception::sceneOf(loaded, perception::parseModel(model.text, model.name), {}, session.threadCount());
+  return perception::sceneOf(loaded, perception::parseModel(model.text, model.name), {}, session.threadCount(),
+                             perception::TileGrid(scans.mapOrigin()));
 }
 
 std::vector<fs::path> testFiles(const RulesOptions& options, const DataHome& home) {

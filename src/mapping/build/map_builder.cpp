@@ -2,6 +2,7 @@
 // Adds scans to a map file in batches; each becomes part of the map in one transaction, from points to facts.
 #include "mapping/build/map_builder.hpp"
 #include "mapping/build/batch_size.hpp"
+#include "mapping/stored_grid.hpp"
 
 #include <algorithm>
 #include <future>
@@ -153,6 +154,7 @@ class MapBuild {
     rdf::WriteTransaction begun = work_.environment().write();
     begun.useThreads(params_.threads);
     requireOwn(begun);
+    storeGrid(begun, parsed_.inputs.tileGrid());
     return begun;
   }
 

@@ -10,6 +10,7 @@
 #include "mapping/clouds/recent_scans.hpp"
 #include "mapping/damaged_map.hpp"
 #include "mapping/map_tables.hpp"
+#include "mapping/stored_grid.hpp"
 
 namespace cluxel::mapping {
 
@@ -49,7 +50,7 @@ class OutputReader {
   }
 
   void readPoints(const TileSet& keys) {
-    perception::PointsFromScans from_scans;
+    perception::PointsFromScans from_scans(storedGrid(transaction_));
     each(Stage::Points, keys, out_.points, [&](const TileKey& key, std::string_view bytes) {
       from_scans.add(out_.points.emplace(key, ofTile(key, perception::tilePointsFromBytes(bytes))).first->second);
     });
@@ -241,6 +242,7 @@ TileSet TileStages::computeAnew(rdf::WriteTransaction& transaction, TileSet tile
 
 TileSet TileStages::run(rdf::WriteTransaction& transaction, PointChanges changes, unsigned threads, bool compute_anew,
                         ProgressSink& sink) {
+  outputs_.grid = storedGrid(transaction);
   RecentScans scans(transaction);
   MapOutputStore store(transaction, scans, changes_);
   StageProgress progress(sink);
@@ -291,6 +293,7 @@ void TileStages::readAsBefore(const rdf::ReadTransaction* earlier, TileSet tiles
 }
 
 void TileStages::load(const rdf::ReadTransaction& transaction) {
+  outputs_.grid = storedGrid(transaction);
   RecentScans scans(transaction);
   OutputReader(transaction, scans, outputs_).readForScene(storedTiles(transaction));
 }
@@ -300,6 +303,7 @@ void TileStages::hold(const rdf::ReadTransaction& transaction, const TileSet& ti
   std::size_t points = 0;
   for (const auto& [key, tile] : outputs_.points) points += tile.size();
   if (points > kPointsBeside) dropPoints(), returnFreeMemory();
+  outputs_.grid = storedGrid(transaction);
   RecentScans scans(transaction);
   const EarlierOutputs earlier{earlier_, read_as_before_};
   OutputReader reader(transaction, scans, outputs_, &earlier);
@@ -321,6 +325,7 @@ perception::Scene TileStages::takeScene(const std::vector<Cloud>& clouds) {
   perception::Scene assembled = scene(clouds);
   if (keep_ == Keep::Summaries) {
     perception::TileOutputs kept;
+    kept.grid = outputs_.grid;
     kept.summaries = std::move(outputs_.summaries);
     outputs_ = std::move(kept);
   }

@@ -108,6 +108,8 @@ class TileStages {
   /// The seeds of the scene's cluxels.
   perception::SceneSeeds seeds() const { return seedsOf(outputs_); }
 
+  /// Of the map that was read last.
+  const perception::TileGrid& grid() const { return outputs_.grid; }
   /// Of the tiles for which loadPoints() was called.
   const std::map<perception::TileKey, perception::TilePoints>& points() const { return outputs_.points; }
   const std::map<perception::TileKey, perception::CluxelTile>& cluxels() const { return outputs_.cluxels; }

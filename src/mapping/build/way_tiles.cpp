@@ -9,6 +9,7 @@
 #include "mapping/clouds/scan_store.hpp"
 #include "mapping/damaged_map.hpp"
 #include "mapping/map_tables.hpp"
+#include "mapping/stored_grid.hpp"
 #include "mapping/ways/way_stage.hpp"
 
 namespace cluxel::mapping {
@@ -149,7 +150,7 @@ WayGraph storedWays(const rdf::ReadTransaction& transaction) {
   std::vector<WayTile> tiles;
   for (const TileKey& key : storedTiles(transaction))
     tiles.push_back(ofTile(key, wayTileFromBytes(requiredBlock(transaction, tables::kWays, key))));
-  return mergedWays(tiles);
+  return mergedWays(tiles, storedGrid(transaction));
 }
 
 WayGraph measuredWays(const rdf::ReadTransaction& transaction) {

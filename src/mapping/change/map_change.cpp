@@ -15,6 +15,7 @@
 #include "mapping/inference/infer_facts.hpp"
 #include "mapping/inference/sparql_rules.hpp"
 #include "mapping/map_state.hpp"
+#include "mapping/stored_grid.hpp"
 
 namespace cluxel::mapping {
 
@@ -120,10 +121,11 @@ std::uint64_t batchSizeOf(const std::vector<Cloud>& clouds, const rdf::ReadTrans
   for (const Cloud& cloud : storedClouds(transaction)) map_points += cloud.point_count;
   const std::uint64_t size = partSize(points, map_points, max_points);
   const TileSet tiles = storedTiles(transaction);
+  const perception::TileGrid grid = storedGrid(transaction);
   TileSet all, of_batch;
   std::size_t computed = 0, scans = 0;
   for (std::size_t i = 0; i < clouds.size(); ++i) {
-    of_batch.merge(tilesInBounds(clouds[i], tiles));
+    of_batch.merge(tilesInBounds(clouds[i], tiles, grid));
     batch_points += clouds[i].point_count;
     const std::size_t left = clouds.size() - i - 1;
     if (left > 0 && !isFull(batch_points, ++scans, left, size)) continue;
@@ -137,8 +139,9 @@ std::uint64_t batchSizeOf(const std::vector<Cloud>& clouds, const rdf::ReadTrans
 /// Clouds that reach most of the map go together when nothing else is asked for: all is decided anew, once.
 std::uint64_t usualBatchOf(const std::vector<Cloud>& clouds, const rdf::ReadTransaction& transaction) {
   const TileSet tiles = storedTiles(transaction);
+  const perception::TileGrid grid = storedGrid(transaction);
   TileSet reached;
-  for (const Cloud& cloud : clouds) reached.merge(tilesInBounds(cloud, tiles));
+  for (const Cloud& cloud : clouds) reached.merge(tilesInBounds(cloud, tiles, grid));
   return 2 * reached.size() > tiles.size() ? kBatchPoints : kStagePoints;
 }
 

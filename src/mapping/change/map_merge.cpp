@@ -185,12 +185,17 @@ class Merge {
     return texts;
   }
 
+  /// Whether the tiles of a map lie as those of the result, so that they can be taken.
+  bool hasTilesOfResult(std::size_t i) const {
+    const MapInputs own = readers_[i].inputs(), result = inputsOfResult();
+    return maps_[i].T_first_map.matrix().isIdentity(0) && own.tileGrid() == result.tileGrid();
+  }
+
   /// Of the maps in the frame of the result, the one with most points: its scans need no new stages.
   std::size_t largest() const {
     std::size_t best = 0;
     for (std::size_t i = 1; i < maps_.size(); ++i)
-      if (maps_[i].T_first_map.matrix().isIdentity(0) && readers_[i].summary().points > readers_[best].summary().points)
-        best = i;
+      if (hasTilesOfResult(i) && readers_[i].summary().points > readers_[best].summary().points) best = i;
     return best;
   }
 
@@ -248,10 +253,9 @@ class Merge {
   /// An older copy of a map does not bring back what was withdrawn since.
   void leaveOutWithdrawn(ScanAdditions& additions) {
     const std::vector<ContentHash> withdrawn = withdrawnAmong(quadsOfMaps());
-    for (const ContentHash& id : withdrawn) eraseStatement(additions.transaction(), id);
-    if (withdrawn.empty()) return;
     std::vector<std::string> ids;
-    for (const ContentHash& id : withdrawn) ids.push_back(id.hex());
+    for (const ContentHash& id : withdrawn) eraseStatement(additions.transaction(), id), ids.push_back(id.hex());
+    if (ids.empty()) return;
     sink_.note(std::to_string(ids.size()) +
                " operator statements are left out, because one of the maps has withdrawn " + "them: " + joined(ids) +
                "; state them again to have them");
@@ -281,7 +285,7 @@ class Merge {
   /// Whether a map lends its tiles: it has the frame, model and settings of the result.
   bool isAlike(std::size_t number) const {
     const MapInputs own = inputsOfResult(), inputs = readers_[number].inputs();
-    return maps_[number].T_first_map.matrix().isIdentity(0) && own.model.text == inputs.model.text &&
+    return hasTilesOfResult(number) && own.model.text == inputs.model.text &&
            perception::hashOf(own.params) == perception::hashOf(inputs.params);
   }
 

@@ -14,7 +14,7 @@ void ScanReader::begin(std::size_t number) {
   while (ahead_.size() < count)
     ahead_.push_back(std::async(policy, [this, next = number + ahead_.size()] {
       const scan::LoadedScan loaded = scans_.read(next);
-      return ReadScan{loaded.reading, prepareScan(loaded.scan)};
+      return ReadScan{loaded.reading, prepareScan(loaded.scan, perception::TileGrid(scans_.mapOrigin()))};
     }));
 }
 

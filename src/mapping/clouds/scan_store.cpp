@@ -14,6 +14,7 @@
 #include "mapping/clouds/packed_points.hpp"
 #include "mapping/clouds/scan_plausibility.hpp"
 #include "mapping/map_tables.hpp"
+#include "mapping/stored_grid.hpp"
 #include "perception/clustering/tile_points.hpp"
 
 namespace cluxel::mapping {
@@ -172,8 +173,8 @@ std::vector<perception::SceneView> viewsOf(const std::vector<Cloud>& clouds) {
   return views;
 }
 
-TileSet tilesInBounds(const Cloud& cloud, const TileSet& tiles) {
-  const perception::TileKey low = perception::tileOf(cloud.min), high = perception::tileOf(cloud.max);
+TileSet tilesInBounds(const Cloud& cloud, const TileSet& tiles, const perception::TileGrid& grid) {
+  const perception::TileKey low = grid.tileOf(cloud.min), high = grid.tileOf(cloud.max);
   TileSet reached;
   for (auto tile = tiles.lower_bound({low.x, low.y}); tile != tiles.end() && tile->x <= high.x; ++tile)
     if (tile->y >= low.y && tile->y <= high.y) reached.insert(*tile);
@@ -196,16 +197,18 @@ TileSet PointChanges::tiles() const {
 
 void PointChanges::readAnew(const rdf::ReadTransaction& transaction) {
   noteAnew(transaction);
+  const perception::TileGrid grid = storedGrid(transaction);
   for (const auto& [scan, lowest] : std::exchange(scans_anew, {}))
-    for (auto& [tile, segment] : perception::splitScan(storedScan(transaction, scan)))
+    for (auto& [tile, segment] : perception::splitScan(storedScan(transaction, scan), grid))
       if (anew.contains(tile)) added[tile].push_back(std::move(segment));
 }
 
 void PointChanges::noteAnew(const rdf::ReadTransaction& transaction) {
   if (anew.empty()) return;
   for (const perception::TileKey& tile : anew) added[tile].clear();  // no scan may have points there
+  const perception::TileGrid grid = storedGrid(transaction);
   for (const Cloud& cloud : storedClouds(transaction))
-    if (const TileSet reached = tilesInBounds(cloud, anew); !reached.empty()) {
+    if (const TileSet reached = tilesInBounds(cloud, anew, grid); !reached.empty()) {
       perception::TileKey lowest = *reached.begin();
       for (const perception::TileKey& tile : reached) lowest.y = std::min(lowest.y, tile.y);
       scans_anew.emplace(cloud.id, lowest);
@@ -249,9 +252,9 @@ std::optional<std::string> differenceOfPoses(const Cloud& given, const Cloud& th
   return textOfDifference(given.T_map_sensor, there.T_map_sensor);
 }
 
-PreparedScan prepareScan(const scan::Scan& scan) {
+PreparedScan prepareScan(const scan::Scan& scan, const perception::TileGrid& grid) {
   requireTime(scan);
-  PreparedScan prepared{cloudOf(scan), {}, perception::splitScan(scan)};
+  PreparedScan prepared{cloudOf(scan), {}, perception::splitScan(scan, grid)};
   requirePlausible(scan, prepared.segments);
   prepared.packed_points = packedPoints(scan.points);
   return prepared;
@@ -260,7 +263,7 @@ PreparedScan prepareScan(const scan::Scan& scan) {
 ScanSegments storeScan(rdf::WriteTransaction& transaction, const scan::Scan& scan) {
   requireTime(scan);
   if (isThere(transaction, unmeasuredCloud(scan))) return {};
-  return storeScan(transaction, prepareScan(scan));
+  return storeScan(transaction, prepareScan(scan, storedGrid(transaction)));
 }
 
 ScanSegments storeScan(rdf::WriteTransaction& transaction, PreparedScan scan) {
@@ -290,7 +293,8 @@ bool copyScan(rdf::WriteTransaction& transaction, const rdf::ReadTransaction& ot
 
 TileSet removeScan(rdf::WriteTransaction& transaction, const scan::ScanId& id) {
   TileSet touched;
-  for (const auto& [tile, segment] : perception::splitScan(storedScan(transaction, id))) touched.insert(tile);
+  for (const auto& [tile, segment] : perception::splitScan(storedScan(transaction, id), storedGrid(transaction)))
+    touched.insert(tile);
   transaction.eraseBlock(tables::kScanPoints, tables::keyOf(id));
   transaction.eraseBlock(tables::kScans, tables::keyOf(id));
   return touched;
@@ -304,9 +308,10 @@ std::vector<ScanSegments> segmentsOfScans(const rdf::ReadTransaction& transactio
     clouds.push_back(requiredCloud(transaction, id));
     blocks.push_back(requiredPoints(transaction, id));
   }
+  const perception::TileGrid grid = storedGrid(transaction);
   std::vector<ScanSegments> segments(scans.size());
   parallelFor(scans.size(), threads, [&](std::size_t i) {
-    segments[i] = perception::splitScan(scanOf(clouds[i], unpackedPoints(blocks[i], clouds[i].point_count)));
+    segments[i] = perception::splitScan(scanOf(clouds[i], unpackedPoints(blocks[i], clouds[i].point_count)), grid);
   });
   return segments;
 }

@@ -63,7 +63,7 @@ struct PreparedScan {
 };
 
 /// Throws InputError for a scan that cannot be of a place (requirePlausible()), or whose time has no date.
-PreparedScan prepareScan(const scan::Scan& scan);
+PreparedScan prepareScan(const scan::Scan& scan, const perception::TileGrid& grid);
 
 /// Stores a scan; returns its points by tile. A scan that was measured alike and has the same pose is the same cloud:
 /// nothing is stored but the later of the two times (a time is later than none), and nothing is returned. The same scan
@@ -97,7 +97,7 @@ TileSet storedTiles(const rdf::ReadTransaction& transaction);
 void storeTiles(rdf::WriteTransaction& transaction, const TileSet& tiles);
 
 /// Those of `tiles` that lie within the bounds of the cloud, a box: all in which it can have points.
-TileSet tilesInBounds(const Cloud& cloud, const TileSet& tiles);
+TileSet tilesInBounds(const Cloud& cloud, const TileSet& tiles, const perception::TileGrid& grid);
 std::vector<scan::ScanId> idsOf(const std::vector<Cloud>& clouds);
 /// The clouds of the map, ascending by id.
 std::vector<Cloud> storedClouds(const rdf::ReadTransaction& transaction);

@@ -13,15 +13,15 @@ namespace cluxel::mapping {
 
 namespace {
 
-std::uint64_t placeOf(const perception::Primitive& primitive) {
-  return perception::mortonCode(perception::tileOf(primitive.centroid));
+std::uint64_t placeOf(const perception::Scene& scene, const perception::Primitive& primitive) {
+  return perception::mortonCode(scene.cluxels.grid.tileOf(primitive.centroid));
 }
 
 std::uint64_t placeOf(const perception::Scene& scene, const rules::SemanticObject& object) {
   std::uint64_t first = std::numeric_limits<std::uint64_t>::max();
   for (const rules::ObjectPart& part : object.parts)
     for (const perception::PrimitiveIndex primitive : part.primitives)
-      first = std::min(first, placeOf(scene.primitives[primitive]));
+      first = std::min(first, placeOf(scene, scene.primitives[primitive]));
   return first;
 }
 
@@ -38,7 +38,7 @@ std::vector<Number> ascending(const std::vector<std::uint64_t>& places) {
 
 std::vector<perception::PrimitiveIndex> primitivesByPlace(const perception::Scene& scene) {
   std::vector<std::uint64_t> places;
-  for (const perception::Primitive& primitive : scene.primitives) places.push_back(placeOf(primitive));
+  for (const perception::Primitive& primitive : scene.primitives) places.push_back(placeOf(scene, primitive));
   return ascending<perception::PrimitiveIndex>(places);
 }
 

@@ -54,15 +54,15 @@ bool isToGround(const perception::Relation& relation) {
 }
 
 /// One ground patch per tile, so that relations to the ground stay local when a distant scan is added.
-std::string groundPatchUnder(const perception::Primitive& primitive) {
-  const perception::TileKey tile = perception::tileOf(primitive.centroid);
+std::string groundPatchUnder(const perception::Scene& scene, perception::PrimitiveIndex primitive) {
+  const perception::TileKey tile = scene.cluxels.grid.tileOf(scene.primitives[primitive].centroid);
   return rdf::iriOfGroundPatch(tile.x, tile.y);
 }
 
 void addRelation(const perception::Scene& scene, const perception::Relation& relation, rdf::TermId from,
                  FactSink& facts) {
   const std::string_view property = perception::relationInfos()[static_cast<std::size_t>(relation.kind)].property;
-  const std::string to = isToGround(relation) ? groundPatchUnder(scene.primitives[relation.from])
+  const std::string to = isToGround(relation) ? groundPatchUnder(scene, relation.from)
                                               : rdf::iriOfPrimitive(scene.primitives[relation.to].id);
   facts.link(from, property, facts.iri(to));
 }
@@ -90,7 +90,7 @@ ContentHash causeOf(const perception::Scene& scene, const std::vector<perception
   for (const perception::Relation& relation : relations) {
     hasher.add(relation.kind);
     if (isToGround(relation))
-      hasher.addText(groundPatchUnder(scene.primitives[relation.from]));
+      hasher.addText(groundPatchUnder(scene, relation.from));
     else
       hasher.add(scene.primitives[relation.to].id);
   }
@@ -112,7 +112,7 @@ void addGroundPatches(const perception::Scene& scene, FactSink& facts) {
   std::set<std::string> patches;
   for (const perception::Relation& relation : scene.relations)
     if (isToGround(relation) && relation.measure <= kTouchesGround_m)
-      patches.insert(groundPatchUnder(scene.primitives[relation.from]));
+      patches.insert(groundPatchUnder(scene, relation.from));
   for (const std::string& patch : patches) {
     if (!facts.beginUnit(unitOfGroundPatch(patch), ContentHasher().addText("ground patch").finish())) continue;
     facts.type(facts.iri(patch), rdf::vocabulary::clx("GroundPatch"));
@@ -158,7 +158,7 @@ void addPrimitive(const perception::Scene& scene, perception::PrimitiveIndex num
 
 std::optional<std::string> touchedPatch(const perception::Scene& scene, perception::PrimitiveIndex number) {
   for (const perception::Relation& relation : statedRelations(scene, number))
-    if (isToGround(relation)) return groundPatchUnder(scene.primitives[number]);
+    if (isToGround(relation)) return groundPatchUnder(scene, number);
   return std::nullopt;
 }
 

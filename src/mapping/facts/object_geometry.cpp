@@ -69,12 +69,12 @@ std::vector<std::uint32_t> objectOfCluxel(const rules::ReasoningResult& result, 
 }
 
 std::map<std::pair<std::uint32_t, scan::ScanId>, Sighting> sightingsOf(
-    const std::map<perception::TileKey, perception::SummaryTile>& tiles,
+    const std::map<perception::TileKey, perception::SummaryTile>& tiles, const perception::TileGrid& grid,
     const std::vector<std::uint32_t>& object_of_cluxel) {
   std::map<std::pair<std::uint32_t, scan::ScanId>, Sighting> sightings;
   std::uint32_t base = 0;
   for (const auto& [key, tile] : tiles) {
-    const Eigen::Vector3d corner = cornerOf(key);
+    const Eigen::Vector3d corner = grid.cornerOf(key);
     std::map<std::pair<std::uint32_t, std::uint32_t>, Sighting> of_tile;
     for (std::uint32_t c = 0; c < tile.size(); ++c) {
       const std::uint32_t object = object_of_cluxel[base + c];

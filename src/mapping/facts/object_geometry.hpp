@@ -47,9 +47,9 @@ struct Sighting {
   std::uint64_t point_count = 0;
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();  ///< of its points, those of a cluxel rounded by 1 mm [m, map]
 };
-/// By (object, scan). `tiles`: all of the scene. Cluxels are summed tile by tile in their order.
+/// By (object, scan). `tiles`: all of the scene, which lie in `grid`. Cluxels are summed tile by tile in their order.
 std::map<std::pair<std::uint32_t, scan::ScanId>, Sighting> sightingsOf(
-    const std::map<perception::TileKey, perception::SummaryTile>& tiles,
+    const std::map<perception::TileKey, perception::SummaryTile>& tiles, const perception::TileGrid& grid,
     const std::vector<std::uint32_t>& object_of_cluxel);
 
 /// Pairs of objects (a < b) with a gap below `largest_m` between their cluxels' boxes, sorted. Objects with `is_ground`

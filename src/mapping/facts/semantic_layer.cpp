@@ -106,7 +106,7 @@ void writeObjectsSoFar(rdf::WriteTransaction& transaction, const MapInputs& inpu
                        std::span<const rules::SemanticObject> objects) {
   const rules::ReasoningResult so_far{{objects.begin(), objects.end()}, {}};
   const std::vector<std::uint32_t> object_of = objectOfCluxel(so_far, scene.cluxels.size());
-  const auto sightings = sightingsOf(stages.summaries(), object_of);
+  const auto sightings = sightingsOf(stages.summaries(), stages.grid(), object_of);
   const auto wide = mergedParts(wideTilesOf(scene, stages.summaries(), so_far.objects));
   SceneFacts facts(transaction, inputs, clouds, scene);
   writeObserved(
@@ -160,7 +160,7 @@ SemanticLayer writeSemanticLayer(rdf::WriteTransaction& transaction, const Parse
   const auto policy = threads > 1 ? std::launch::async : std::launch::deferred;
   auto near = std::async(policy, [&] { return nearOf(result.objects, scene.cluxels, object_of); });
   auto wide_tiles = std::async(policy, [&] { return wideTilesOf(scene, stages.summaries(), result.objects); });
-  auto seen_as = std::async(policy, [&] { return sightingsOf(stages.summaries(), object_of); });
+  auto seen_as = std::async(policy, [&] { return sightingsOf(stages.summaries(), stages.grid(), object_of); });
   const ObjectPresence presence =
       updatePresence(transaction, rayTargets(scene, result.objects, parsed.rules), Covered::All, clouds, {}, threads);
   const auto sightings = seen_as.get();

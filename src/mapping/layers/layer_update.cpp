@@ -65,7 +65,7 @@ class LayerMaker {
 
   void addPrimitives(const Run& run, TileLayer& layer) const {
     const perception::SceneCluxels& cluxels = layers_.scene.cluxels;
-    const Eigen::Vector3d corner = cornerOf(layer.key);
+    const Eigen::Vector3d corner = cluxels.grid.cornerOf(layer.key);
     for (std::uint32_t i = run.begin; i < run.end; ++i) {
       const perception::PrimitiveIndex primitive = cluxels.primitive[i];
       if (cluxels.component[i] >= layer.primitives.size()) layer.primitives.resize(cluxels.component[i] + 1U);

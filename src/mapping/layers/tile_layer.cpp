@@ -131,10 +131,9 @@ Numbers cluxelsFrom(TileReader& reader, std::size_t shares) {
 
 }  // namespace
 
-Eigen::AlignedBox2d boxInMap(const TileLayer::PrimitiveHere& primitive, const perception::TileKey& tile) {
-  const Eigen::Vector2d corner = perception::cornerOf(tile).head<2>();
-  return {Eigen::Vector2d(corner + primitive.bounds.min().head<2>().cast<double>()),
-          Eigen::Vector2d(corner + primitive.bounds.max().head<2>().cast<double>())};
+Eigen::AlignedBox2d boxInMap(const TileLayer::PrimitiveHere& primitive, const Eigen::Vector3d& corner) {
+  return {Eigen::Vector2d(corner.head<2>() + primitive.bounds.min().head<2>().cast<double>()),
+          Eigen::Vector2d(corner.head<2>() + primitive.bounds.max().head<2>().cast<double>())};
 }
 
 std::string toBytes(const TileLayer& layer) {

@@ -40,7 +40,7 @@ struct TileLayer {
 };
 
 /// The box of a primitive's part in a tile, in plan [m, map].
-Eigen::AlignedBox2d boxInMap(const TileLayer::PrimitiveHere& primitive, const perception::TileKey& tile);
+Eigen::AlignedBox2d boxInMap(const TileLayer::PrimitiveHere& primitive, const Eigen::Vector3d& corner);
 
 std::string toBytes(const TileLayer& layer);
 /// Throws Error (StoreUnavailable) when the bytes are damaged or of another kind.

@@ -19,9 +19,9 @@ using perception::TileKey;
 constexpr std::string_view kWideKind = "WIDE";
 constexpr std::uint32_t kWideVersion = 1;
 
-/// Adds what each scan saw of a cluxel.
-void addViews(const perception::SummaryTile& tile, std::uint32_t cluxel, std::map<scan::ScanId, Sighting>& seen) {
-  const Eigen::Vector3d corner = perception::cornerOf(tile.key);
+/// Adds what each scan saw of a cluxel. `corner`: of its tile [m, map].
+void addViews(const perception::SummaryTile& tile, const Eigen::Vector3d& corner, std::uint32_t cluxel,
+              std::map<scan::ScanId, Sighting>& seen) {
   for (std::uint32_t view = tile.view_offset[cluxel]; view < tile.view_offset[cluxel + 1]; ++view) {
     Sighting& sighting = seen[tile.scans[tile.view_scan[view]]];
     sighting.point_count += tile.view_point_count[view];
@@ -102,7 +102,7 @@ std::vector<WideTile> wideTilesOf(const perception::Scene& scene,
       WidePart& part = tile.parts.emplace_back(WidePart{name.first, name.second, sumsOf(scene.cluxels, cluxels), {}});
       part.sums.corners = convexHull(std::move(part.sums.corners));
       for (const std::uint32_t cluxel : cluxels)
-        addViews(summaries.at(key), scene.cluxels.name[cluxel].index, part.seen);
+        addViews(summaries.at(key), scene.cluxels.grid.cornerOf(key), scene.cluxels.name[cluxel].index, part.seen);
     }
   }
   return tiles;

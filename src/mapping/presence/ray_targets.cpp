@@ -55,8 +55,9 @@ std::vector<perception::Place> placesOn(const perception::Scene& scene, const ru
 std::vector<Eigen::Vector3d> placesWithin(const perception::Scene& scene, const rules::SemanticObject& object) {
   const perception::SceneCluxels& cluxels = scene.cluxels;
   const auto cell_of = [&](std::uint32_t c) {
-    return std::pair(static_cast<std::int64_t>(std::floor(cluxels.center[c].x() / kEdgeCell_m)),
-                     static_cast<std::int64_t>(std::floor(cluxels.center[c].y() / kEdgeCell_m)));
+    const Eigen::Vector3d center = cluxels.center[c] - cluxels.grid.corner();
+    return std::pair(static_cast<std::int64_t>(std::floor(center.x() / kEdgeCell_m)),
+                     static_cast<std::int64_t>(std::floor(center.y() / kEdgeCell_m)));
   };
   const std::vector<std::uint32_t> members = cluxelsOf(object);
   std::map<std::pair<std::int64_t, std::int64_t>, float> edge;  // height above ground of the highest cluxel

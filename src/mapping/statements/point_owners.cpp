@@ -7,6 +7,7 @@
 #include "cluxel/error.hpp"
 #include "mapping/layers/stored_layers.hpp"
 #include "mapping/map_part.hpp"
+#include "mapping/stored_grid.hpp"
 
 namespace cluxel::mapping {
 
@@ -84,7 +85,7 @@ PointAnchor anchorOfStored(const rdf::ReadTransaction& transaction, TileStages& 
 
 PointOwners::PointOwners(const rdf::ReadTransaction& transaction, TileStages& stages,
                          const perception::ThinParams& thin, const std::vector<Cloud>& clouds)
-    : transaction_(transaction), stages_(stages), thin_(thin), clouds_(clouds) {
+    : transaction_(transaction), grid_(storedGrid(transaction)), stages_(stages), thin_(thin), clouds_(clouds) {
   std::uint32_t next = 0;
   for (const auto& [key, tile] : stages.summaries()) {
     first_cluxel_.emplace(key, next);
@@ -112,7 +113,7 @@ void PointOwners::forEachPoint(const PointAnchor& anchor, const std::function<vo
 
 perception::TileSet PointOwners::tilesOf(const PointAnchor& anchor) {
   perception::TileSet tiles;
-  forEachPoint(anchor, [&](const Eigen::Vector3d& p_map) { tiles.insert(perception::tileOf(p_map)); });
+  forEachPoint(anchor, [&](const Eigen::Vector3d& p_map) { tiles.insert(grid_.tileOf(p_map)); });
   return tiles;
 }
 
@@ -122,11 +123,11 @@ std::vector<std::uint32_t> PointOwners::cluxelsOf(const PointAnchor& anchor) {
   stages_.loadPoints(transaction_, tiles);
   std::vector<std::uint32_t> cluxels;
   forEachPoint(anchor, [&](const Eigen::Vector3d& p_map) {
-    const perception::TileKey tile = perception::tileOf(p_map);
+    const perception::TileKey tile = grid_.tileOf(p_map);
     const auto first = first_cluxel_.find(tile);
     if (first == first_cluxel_.end()) return;
     const auto finder = finders_.try_emplace(tile, stages_.points().at(tile), thin_).first;
-    const std::uint32_t kept = finder->second.find(perception::localPoint(tile, p_map));
+    const std::uint32_t kept = finder->second.find(perception::localPoint(grid_, tile, p_map));
     if (kept != perception::RepresentativeFinder::kNone)
       cluxels.push_back(first->second + stages_.cluxels().at(tile).point_cluxel[kept]);
   });

@@ -35,6 +35,8 @@ class PointOwners {
   std::vector<std::uint32_t> cluxelsOf(const PointAnchor& anchor);
   /// The tiles in which the points lie, held or not.
   perception::TileSet tilesOf(const PointAnchor& anchor);
+  /// In which the tiles of the map lie.
+  const perception::TileGrid& grid() const { return grid_; }
 
  private:
   struct Posed {
@@ -46,6 +48,7 @@ class PointOwners {
   void forEachPoint(const PointAnchor& anchor, const std::function<void(const Eigen::Vector3d&)>& visit);
 
   const rdf::ReadTransaction& transaction_;
+  perception::TileGrid grid_;
   TileStages& stages_;
   perception::ThinParams thin_;
   const std::vector<Cloud>& clouds_;

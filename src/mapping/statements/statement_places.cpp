@@ -13,12 +13,13 @@ namespace {
 constexpr std::size_t kTileKeyBytes = 8;
 
 /// Those of `map` that come near the rectangle around the corners.
-perception::TileSet tilesAround(const std::vector<Eigen::Vector2d>& corners, const perception::TileSet& map) {
+perception::TileSet tilesAround(const std::vector<Eigen::Vector2d>& corners, const perception::TileGrid& grid,
+                                const perception::TileSet& map) {
   Eigen::AlignedBox2d box;
   for (const Eigen::Vector2d& corner : corners) box.extend(corner);
   perception::TileSet tiles;
   for (const perception::TileKey& tile : map) {
-    const Eigen::Vector2d low = perception::cornerOf(tile).head<2>();
+    const Eigen::Vector2d low = grid.cornerOf(tile).head<2>();
     if (box.intersects({low, Eigen::Vector2d(low.array() + perception::kTileSize_m)})) tiles.insert(tile);
   }
   return tiles;
@@ -37,7 +38,8 @@ std::vector<Eigen::Vector2d> cornersOf(const RegionAnchor& region, const std::ve
 
 perception::TileSet tilesOf(const Statement& statement, PointOwners& owners, const std::vector<Cloud>& clouds,
                             const perception::TileSet& map) {
-  if (statement.kind == StatementKind::IgnoreRegion) return tilesAround(cornersOf(statement.region, clouds), map);
+  if (statement.kind == StatementKind::IgnoreRegion)
+    return tilesAround(cornersOf(statement.region, clouds), owners.grid(), map);
   return owners.tilesOf(statement.points);
 }
 

@@ -181,7 +181,7 @@ class Watch {
     std::vector<std::size_t> readable;
     for (const std::size_t i : fresh) {
       try {
-        prepareScan(scans.load(i));
+        prepareScan(scans.load(i), perception::TileGrid(scans.mapOrigin()));
         readable.push_back(i);
       } catch (const InputError& fault) {
         notes_.tellFaulty(fault.what());

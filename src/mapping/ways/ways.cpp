@@ -134,9 +134,21 @@ void addWays(const LineGraph& lines, std::span<const AcrossWay> across, const st
   }
 }
 
+/// From the frame of the grid to that of the map.
+void move(WayGraph& graph, const Eigen::Vector3d& by) {
+  if (by.isZero(0)) return;
+  for (Way& way : graph.ways)
+    for (Eigen::Vector3d& point : way.line) point += by;
+  for (Kerb& kerb : graph.kerbs)
+    for (Eigen::Vector3d& point : kerb.line) point += by;
+  for (Junction& junction : graph.junctions) junction.place += by;
+  for (Region& region : graph.regions)
+    for (Eigen::Vector2d* place : {&region.min, &region.max, &region.first_centre}) *place += by.head<2>();
+}
+
 }  // namespace
 
-WayGraph mergedWays(std::span<const WayTile> tiles) {
+WayGraph mergedWays(std::span<const WayTile> tiles, const perception::TileGrid& grid) {
   std::vector<TileKey> keys;
   for (const WayTile& tile : tiles) keys.push_back(tile.key);
   const TileCells cells(std::move(keys));
@@ -149,6 +161,7 @@ WayGraph mergedWays(std::span<const WayTile> tiles) {
     for (const std::uint16_t part : tiles[slot].region)
       region_of.push_back(part == kNoRegion ? kNoPlace : region_of_part[first[slot] + part]);
   addWays(lineGraphOf(cells, tiles, &WayTile::middle), joined(tiles, &WayTile::across), region_of, graph);
+  move(graph, grid.corner());
   return graph;
 }
 

@@ -29,7 +29,7 @@ void MemberLists::add(const TileLayer& layer, const perception::SummaryTile& sum
       place->second.members.confidence = record->confidence;
     }
   }
-  const Eigen::Vector3d corner = perception::cornerOf(layer.key);
+  const Eigen::Vector3d corner = grid_.cornerOf(layer.key);
   const std::vector<const Eigen::Isometry3d*> motions = motionsOf(summary.scans);
   for (std::size_t c = 0; c < layer.size(); ++c) {
     const std::uint32_t share = layer.share_of_cluxel[c];

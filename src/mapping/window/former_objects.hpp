@@ -9,6 +9,7 @@
 #include "mapping/build/tile_stages.hpp"
 #include "mapping/change/member_places.hpp"
 #include "mapping/layers/tile_layer.hpp"
+#include "mapping/stored_grid.hpp"
 #include "mapping/window/map_window.hpp"
 
 namespace cluxel::mapping {
@@ -18,7 +19,7 @@ class MemberLists {
  public:
   /// Places are where the seed points are after `motions`.
   explicit MemberLists(const rdf::ReadTransaction& transaction, CloudMotions motions = {})
-      : transaction_(transaction), motions_(std::move(motions)) {}
+      : transaction_(transaction), grid_(storedGrid(transaction)), motions_(std::move(motions)) {}
   /// Adds the members that `layer` holds of the objects for which `is_wanted`. `summary`: of the same tile, of which
   /// places matter when its seeds may be others afterwards.
   void add(const TileLayer& layer, const perception::SummaryTile& summary, bool has_places,
@@ -36,6 +37,7 @@ class MemberLists {
   std::vector<const Eigen::Isometry3d*> motionsOf(const std::vector<ContentHash>& scans) const;
 
   const rdf::ReadTransaction& transaction_;
+  perception::TileGrid grid_;
   CloudMotions motions_;
   std::map<ContentHash, Collected> objects_;
 };

@@ -10,6 +10,7 @@
 
 #include "mapping/clouds/scan_store.hpp"
 #include "mapping/layers/stored_layers.hpp"
+#include "mapping/stored_grid.hpp"
 #include "mapping/window/map_window.hpp"
 #include "rules/decide/local_reach.hpp"
 #include "rules/objects/finished_objects.hpp"
@@ -33,14 +34,15 @@ struct Part {
 };
 
 /// The primitives of a tile, other than those of some objects.
-std::vector<Part> partsIn(const TileLayer& layer, const std::set<ContentHash>& but) {
+std::vector<Part> partsIn(const TileLayer& layer, const perception::TileGrid& grid, const std::set<ContentHash>& but) {
   std::vector<char> is_left_out(layer.primitives.size(), 0);
   for (const TileLayer::Share& share : layer.shares)
     if (but.contains(share.object))
       for (const std::uint32_t component : share.components) is_left_out[component] = 1;
+  const Eigen::Vector3d corner = grid.cornerOf(layer.key);
   std::vector<Part> parts;
   for (std::size_t i = 0; i < is_left_out.size(); ++i)
-    if (is_left_out[i] == 0) parts.push_back({layer.primitives[i].id, boxInMap(layer.primitives[i], layer.key)});
+    if (is_left_out[i] == 0) parts.push_back({layer.primitives[i].id, boxInMap(layer.primitives[i], corner)});
   return parts;
 }
 
@@ -49,7 +51,11 @@ class StoredLayerSearch {
  public:
   StoredLayerSearch(const rdf::ReadTransaction& transaction, TileSet map, const std::set<ContentHash>& lone_objects,
                     double reach_m)
-      : transaction_(transaction), lone_objects_(lone_objects), reach_m_(reach_m + kSlack_m), map_(std::move(map)) {}
+      : transaction_(transaction),
+        grid_(storedGrid(transaction)),
+        lone_objects_(lone_objects),
+        reach_m_(reach_m + kSlack_m),
+        map_(std::move(map)) {}
 
   /// Everything in some tiles is layer 0.
   void beginWith(const TileSet& tiles) {
@@ -75,7 +81,7 @@ class StoredLayerSearch {
       while (!reached_[layer_].empty())
         for (const auto& [tile, box] : std::exchange(reached_[layer_], {}))
           for (const TileKey& near : perception::ringOf(tile))
-            if (map_.contains(near) && boxOfTile(near).exteriorDistance(box) <= reach_m_) {
+            if (map_.contains(near) && boxOfTile(grid_, near).exteriorDistance(box) <= reach_m_) {
               found.insert(near);
               lookIn(near, box);
             }
@@ -91,7 +97,7 @@ class StoredLayerSearch {
     std::vector<Part>& parts = place->second;
     const auto layer = is_new ? storedLayer(transaction_, tile) : std::nullopt;
     if (!layer) return parts;
-    parts = partsIn(*layer, lone_objects_);
+    parts = partsIn(*layer, grid_, lone_objects_);
     for (std::size_t i = 0; i < parts.size(); ++i) {
       places_[parts[i].primitive].emplace_back(tile, i);
       if (const auto reached = layer_of_.find(parts[i].primitive); reached != layer_of_.end())
@@ -116,6 +122,7 @@ class StoredLayerSearch {
   }
 
   const rdf::ReadTransaction& transaction_;
+  perception::TileGrid grid_;
   const std::set<ContentHash>& lone_objects_;
   double reach_m_;
   TileSet map_, begun_;

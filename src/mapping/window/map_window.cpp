@@ -122,7 +122,7 @@ std::vector<char> openPrimitives(const MapWindow& window, double reach_m) {
     for (int dx = -rings; dx <= rings; ++dx)
       for (int dy = -rings; dy <= rings; ++dy)
         if (const TileKey near{away.x + dx, away.y + dy}; window.first_cluxel.contains(near))
-          outside[near].push_back(boxOfTile(away));
+          outside[near].push_back(boxOfTile(window.scene.cluxels.grid, away));
   const perception::SceneCluxels& all = window.scene.cluxels;
   for (const auto& [tile, boxes] : outside)
     for (std::uint32_t c = window.first_cluxel.at(tile); c < all.size() && all.name[c].tile == tile; ++c) {

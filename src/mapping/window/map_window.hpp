@@ -18,8 +18,8 @@
 namespace cluxel::mapping {
 
 /// A tile in plan view [m, map].
-inline Eigen::AlignedBox2d boxOfTile(const perception::TileKey& tile) {
-  const Eigen::Vector2d corner = perception::cornerOf(tile).head<2>();
+inline Eigen::AlignedBox2d boxOfTile(const perception::TileGrid& grid, const perception::TileKey& tile) {
+  const Eigen::Vector2d corner = grid.cornerOf(tile).head<2>();
   return {corner, Eigen::Vector2d(corner.array() + perception::kTileSize_m)};
 }
 

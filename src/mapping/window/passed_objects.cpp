@@ -10,6 +10,7 @@
 #include "mapping/clouds/scan_store.hpp"
 #include "mapping/damaged_map.hpp"
 #include "mapping/layers/stored_layers.hpp"
+#include "mapping/stored_grid.hpp"
 #include "mapping/window/kept_objects.hpp"
 #include "mapping/window/map_window.hpp"
 #include "mapping/window/window_presence.hpp"
@@ -22,11 +23,11 @@ using perception::TileKey;
 using perception::TileSet;
 
 /// Tiles whose rectangle comes near a box.
-bool comesNear(const TileKey& tile, const Eigen::AlignedBox3d& box) {
+bool comesNear(const perception::TileGrid& grid, const TileKey& tile, const Eigen::AlignedBox3d& box) {
   constexpr double kAround_m = 1;
-  return boxOfTile(tile).exteriorDistance(
-             Eigen::AlignedBox2d(Eigen::Vector2d(box.min().head<2>().array() - kAround_m),
-                                 Eigen::Vector2d(box.max().head<2>().array() + kAround_m))) <= 0;
+  return boxOfTile(grid, tile)
+             .exteriorDistance(Eigen::AlignedBox2d(Eigen::Vector2d(box.min().head<2>().array() - kAround_m),
+                                                   Eigen::Vector2d(box.max().head<2>().array() + kAround_m))) <= 0;
 }
 
 /// Objects of which all tiles are read at once.
@@ -108,9 +109,10 @@ class TargetSearch {
 
 std::set<ContentHash> passedObjects(const rdf::ReadTransaction& transaction,
                                     const std::vector<Eigen::AlignedBox3d>& rays) {
+  const perception::TileGrid grid = storedGrid(transaction);
   std::set<ContentHash> objects;
   for (const TileKey& tile : storedTiles(transaction)) {
-    if (std::none_of(rays.begin(), rays.end(), [&](const auto& box) { return comesNear(tile, box); })) continue;
+    if (std::none_of(rays.begin(), rays.end(), [&](const auto& box) { return comesNear(grid, tile, box); })) continue;
     if (const auto layer = storedLayer(transaction, tile))
       for (const TileLayer::Share& share : layer->shares) objects.insert(share.object);
   }

@@ -121,7 +121,7 @@ class WindowComparison {
     for (const auto& [tile, layer] : window_.layers)
       for (const TileLayer::PrimitiveHere& here : layer.primitives) {
         if (present.contains(here.id) || cut.contains(here.id)) continue;
-        const Eigen::Vector2d corner = perception::cornerOf(tile).head<2>();
+        const Eigen::Vector2d corner = window_.scene.cluxels.grid.cornerOf(tile).head<2>();
         Eigen::AlignedBox2d& box = boxes[here.id];
         box.extend(Eigen::Vector2d(corner + here.bounds.min().head<2>().cast<double>()));
         box.extend(Eigen::Vector2d(corner + here.bounds.max().head<2>().cast<double>()));

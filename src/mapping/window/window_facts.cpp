@@ -112,7 +112,8 @@ class FactWriting {
     const std::vector<std::vector<ContentHash>> near = nearOfMade();
     rules::ReasoningResult result;
     result.objects = made_;
-    const auto sightings = sightingsOf(sources_.stages.summaries(), objectOfCluxel(result, scene_.cluxels.size()));
+    const auto sightings =
+        sightingsOf(sources_.stages.summaries(), sources_.stages.grid(), objectOfCluxel(result, scene_.cluxels.size()));
     addObjectFacts(
         {sources_.parsed.inputs, sources_.clouds, scene_, result, sightings, presence.times, presence.rays, near, {}},
         facts_);

@@ -85,7 +85,7 @@ class LayerWriting {
 
   /// Bounds of the primitives that have none yet.
   void measure(TileLayer& layer) const {
-    const Eigen::Vector3d corner = perception::cornerOf(layer.key);
+    const Eigen::Vector3d corner = cluxels().grid.cornerOf(layer.key);
     std::vector<char> has_bounds;
     for (const TileLayer::PrimitiveHere& here : layer.primitives) has_bounds.push_back(here.bounds.isEmpty() ? 0 : 1);
     for (std::uint32_t c = window_.first_cluxel.at(layer.key);

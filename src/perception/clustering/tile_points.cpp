@@ -129,9 +129,14 @@ Error strayPoint(const scan::Scan& scan, std::uint32_t point) {
                                                 ", which is not there; the map is damaged, build it anew");
 }
 
-/// As floats relative to a tile's corner.
-Eigen::Vector3f relativeTo(const Eigen::Vector3d& corner, const Eigen::Vector3d& p_map) {
-  const Eigen::Vector3d p = p_map - corner;
+/// The corner of a tile in the frame of the grid.
+Eigen::Vector3d cornerInGrid(const TileKey& key) {
+  return TileGrid().cornerOf(key);
+}
+
+/// As floats relative to a tile's corner; both in the frame of the grid.
+Eigen::Vector3f relativeTo(const Eigen::Vector3d& corner, const Eigen::Vector3d& p_grid) {
+  const Eigen::Vector3d p = p_grid - corner;
   // Just below the upper edge, rounding could give the edge itself, which belongs to the next tile.
   static constexpr auto kLastStep = static_cast<std::int64_t>(kTileSize_m / kLocalStep_m) - 1;
   const auto rounded = [](double value_m) {
@@ -141,10 +146,10 @@ Eigen::Vector3f relativeTo(const Eigen::Vector3d& corner, const Eigen::Vector3d&
   return {rounded(p.x()), rounded(p.y()), static_cast<float>(p.z())};
 }
 
-/// Whether tileOf() gives the tile with this corner. Corners and the tile size are exact.
-bool liesAt(const Eigen::Vector3d& corner, const Eigen::Vector3d& p_map) {
-  return p_map.x() >= corner.x() && p_map.x() < corner.x() + kTileSize_m && p_map.y() >= corner.y() &&
-         p_map.y() < corner.y() + kTileSize_m;
+/// Whether tileOf() gives the tile with this corner. Corners in the grid and the tile size are exact.
+bool liesAt(const Eigen::Vector3d& corner, const Eigen::Vector3d& p_grid) {
+  return p_grid.x() >= corner.x() && p_grid.x() < corner.x() + kTileSize_m && p_grid.y() >= corner.y() &&
+         p_grid.y() < corner.y() + kTileSize_m;
 }
 
 }  // namespace
@@ -154,11 +159,11 @@ void describe(ThinParams& params, ParameterVisitor& visitor) {
   visitor.whole({"thin.keep", "1", 1, 1000, "points kept in each voxel"}, params.keep);
 }
 
-Eigen::Vector3f localPoint(const TileKey& key, const Eigen::Vector3d& p_map) {
-  return relativeTo(cornerOf(key), p_map);
+Eigen::Vector3f localPoint(const TileGrid& grid, const TileKey& key, const Eigen::Vector3d& p_map) {
+  return relativeTo(cornerInGrid(key), grid.fromMap(p_map));
 }
 
-std::map<TileKey, ScanSegment> splitScan(const scan::Scan& scan) {
+std::map<TileKey, ScanSegment> splitScan(const scan::Scan& scan, const TileGrid& grid) {
   std::map<TileKey, ScanSegment> segments;
   ScanSegment* segment = nullptr;
   Eigen::Vector3d corner = Eigen::Vector3d::Zero();  // of the segment's tile
@@ -166,14 +171,15 @@ std::map<TileKey, ScanSegment> splitScan(const scan::Scan& scan) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Eigen::Vector3d p_map = scan::toMap(scan.T_map_sensor, {points.x[i], points.y[i], points.z[i]});
     if (!scan::isInMapRange(p_map)) scan::refusePointOutOfRange(scan, i);
-    if (segment == nullptr || !liesAt(corner, p_map)) {
-      const TileKey key = tileOf(p_map);
-      corner = cornerOf(key);
+    const Eigen::Vector3d p_grid = grid.fromMap(p_map);
+    if (segment == nullptr || !liesAt(corner, p_grid)) {
+      const TileKey key = TileGrid().tileOf(p_grid);
+      corner = cornerInGrid(key);
       segment = &segments[key];
       segment->key = key;
       segment->scan = scan.id;
     }
-    const Eigen::Vector3f p = relativeTo(corner, p_map);
+    const Eigen::Vector3f p = relativeTo(corner, p_grid);
     segment->x.push_back(p.x());
     segment->y.push_back(p.y());
     segment->z.push_back(p.z());
@@ -237,13 +243,14 @@ void PointsFromScans::fill(const scan::Scan& scan) const {
   const auto found = parts_.find(scan.id);
   if (found == parts_.end()) return;
   for (const auto& [tile, own] : found->second) {
-    const Eigen::Vector3d corner = cornerOf(tile->key);
+    const Eigen::Vector3d corner = cornerInGrid(tile->key);
     for (const std::uint32_t i : own) {
       const std::uint32_t at = tile->point[i];
       if (at >= points.size()) throw strayPoint(scan, at);
       const Eigen::Vector3d p_map = scan::toMap(scan.T_map_sensor, {points.x[at], points.y[at], points.z[at]});
-      if (!liesAt(corner, p_map) || !scan::isInMapRange(p_map)) throw strayPoint(scan, at);
-      const Eigen::Vector3f p = relativeTo(corner, p_map);
+      const Eigen::Vector3d p_grid = grid_.fromMap(p_map);
+      if (!liesAt(corner, p_grid) || !scan::isInMapRange(p_map)) throw strayPoint(scan, at);
+      const Eigen::Vector3f p = relativeTo(corner, p_grid);
       tile->x[i] = p.x(), tile->y[i] = p.y(), tile->z[i] = p.z();
       if (!tile->intensity.empty()) tile->intensity[i] = points.intensity.empty() ? 0.0F : points.intensity[at];
       tile->rank[i] = rankOf(points, at);

@@ -28,7 +28,7 @@ struct ThinParams {
 void describe(ThinParams& params, ParameterVisitor& visitor);
 
 /// The points of one scan in one tile, ascending by point number. x and y are relative to the tile's corner, z is the
-/// map's [m]; `intensity` is empty or as long as x.
+/// grid's [m]; `intensity` is empty or as long as x.
 struct ScanSegment {
   TileKey key;
   scan::ScanId scan;
@@ -54,11 +54,11 @@ struct TilePoints {
 };
 
 /// Local coordinates of a map point in the tile that holds it, rounded as splitScan() does.
-Eigen::Vector3f localPoint(const TileKey& key, const Eigen::Vector3d& p_map);
+Eigen::Vector3f localPoint(const TileGrid& grid, const TileKey& key, const Eigen::Vector3d& p_map);
 
 /// Cuts a scan into its tiles. Throws InputError naming the scan and point when a coordinate is not finite or too
 /// large. Cost: about 20 ns a point.
-std::map<TileKey, ScanSegment> splitScan(const scan::Scan& scan);
+std::map<TileKey, ScanSegment> splitScan(const scan::Scan& scan, const TileGrid& grid);
 
 /// Keeps in each voxel the `keep` points with the smallest ranks (ties: by scan id and point): the choice depends on
 /// what was measured, neither on times, the order of the segments nor earlier thinning. Segments must be of tile `key`
@@ -93,6 +93,7 @@ TilePoints tilePointsFromBytes(std::string_view bytes);
 /// Fills tiles that were read with the measured values, from one scan after the other.
 class PointsFromScans {
  public:
+  explicit PointsFromScans(const TileGrid& grid) : grid_(grid) {}
   /// `tile` must stay where it is.
   void add(TilePoints& tile);
   /// The scans whose points are needed.
@@ -107,6 +108,7 @@ class PointsFromScans {
     TilePoints* tile;
     std::vector<std::uint32_t> points;  ///< indices in the tile
   };
+  TileGrid grid_;
   std::map<scan::ScanId, std::vector<Part>> parts_;
 };
 

@@ -42,23 +42,22 @@ void MergedComponent::addMoments(const Component& component, const Eigen::Vector
   points_ = total;
 }
 
-void MergedComponent::add(const ComponentTile& tile, std::size_t number) {
+void MergedComponent::add(const ComponentTile& tile, std::size_t number, const Eigen::Vector3d& corner_map) {
   const Component& component = tile.components[number];
-  const Eigen::Vector3d corner = cornerOf(tile.key);
-  addMoments(component, corner);
+  addMoments(component, corner_map);
   cluxels_ += component.cluxels;
   intensity_ += component.intensity;
   for (std::size_t k = 0; k < scan::kPrimitiveLabelCount; ++k) probability_[k] += component.probability[k];
-  min_ = min_.cwiseMin(corner + vectorOf(component.min));
-  max_ = max_.cwiseMax(corner + vectorOf(component.max));
+  min_ = min_.cwiseMin(corner_map + vectorOf(component.min));
+  max_ = max_.cwiseMax(corner_map + vectorOf(component.max));
   lowest_ = std::min<double>(lowest_, component.lowest);
   highest_ = std::max<double>(highest_, component.highest);
   for (const FootprintCell& cell : tile.cellsOf(number)) {
     cells_.push_back({cell.lowest, cell.count});
-    ground_z_sum_ += static_cast<double>(cell.min[2]) - static_cast<double>(cell.lowest);
+    ground_z_sum_ += corner_map.z() + static_cast<double>(cell.min[2]) - static_cast<double>(cell.lowest);
   }
   for (std::uint32_t i = tile.hull_offset[number]; i < tile.hull_offset[number + 1]; ++i)
-    hull_.emplace_back(corner.head<2>() + tile.hull[i].cast<double>());
+    hull_.emplace_back(corner_map.head<2>() + tile.hull[i].cast<double>());
   scans_.insert(tile.scans.begin() + tile.scan_offset[number], tile.scans.begin() + tile.scan_offset[number + 1]);
 }
 

@@ -14,8 +14,9 @@ namespace cluxel::perception {
 
 class MergedComponent {
  public:
-  /// Adds component `number` of `tile`. Call in canonical order, which fixes the rounding of sums.
-  void add(const ComponentTile& tile, std::size_t number);
+  /// Adds component `number` of `tile`, whose corner is at `corner_map`. Call in canonical order, which fixes the
+  /// rounding of sums.
+  void add(const ComponentTile& tile, std::size_t number, const Eigen::Vector3d& corner_map);
   /// Fills the attributes, boxes, axes and probabilities of `primitive`.
   void describe(Primitive& primitive) const;
   /// The scans with a point in it.

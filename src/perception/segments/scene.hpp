@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "perception/segments/primitive.hpp"
+#include "perception/tile.hpp"
 #include "perception/visibility/sensor_sight.hpp"
 
 namespace cluxel::perception {
@@ -62,6 +63,7 @@ struct SceneSeeds {
 
 /// Cluxels of the whole scene as a structure of arrays, sorted by tile and number, with their graph in CSR form.
 struct SceneCluxels : SceneSeeds {
+  TileGrid grid;  ///< of the map
   std::vector<CluxelName> name;
   std::vector<Eigen::Vector3d> center;      ///< mean of own points [m, map]
   std::vector<Eigen::Vector3f> extent;      ///< size of the box around own points [m]

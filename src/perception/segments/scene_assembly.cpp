@@ -114,7 +114,7 @@ void appendCluxels(const TileOutputs& tiles, const TileKey& key, const TileNumbe
   const LabelTile& labels = tiles.labels.at(key);
   const ComponentTile& components = tiles.components.at(key);
   const auto ground = ringIn(tiles.ground, key);
-  const Eigen::Vector3d corner = cornerOf(key);
+  const Eigen::Vector3d corner = tiles.grid.cornerOf(key);
   const std::size_t count = cluxels.size();
   const auto centre = [&](auto c) -> const Eigen::Vector3f& { return cluxels.mean[c]; };
   appendEach(all.name, count, [&](auto c) { return CluxelName{key, c}; });
@@ -157,6 +157,7 @@ SceneCluxels gatherCluxels(const TileOutputs& tiles, const TileSet& elsewhere) {
   std::size_t edges = 0;
   for (const auto& [key, tile] : tiles.features) edges += tile.edge_target.size();
   reserve(all, numbering.total(), edges);
+  all.grid = tiles.grid;
   all.scans = scansOf(tiles);
   all.edge_offset.push_back(0);
   for (const auto& [key, tile] : tiles.summaries) appendCluxels(tiles, key, numbering, elsewhere, all);
@@ -216,7 +217,7 @@ void fillPrimitives(const TileOutputs& tiles, const std::vector<std::uint32_t>& 
     for (std::size_t number = 0; number < tile.size(); ++number, ++component) {
       scene.primitives[primitive_of[component]].label =
           static_cast<scan::PrimitiveLabel>(tile.components[number].label);
-      merged[primitive_of[component]].add(tile, number);
+      merged[primitive_of[component]].add(tile, number, tiles.grid.cornerOf(key));
     }
   }
   for (std::size_t i = 0; i < count; ++i) {

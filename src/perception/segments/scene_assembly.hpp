@@ -27,6 +27,7 @@ void describe(RelationParams& params, ParameterVisitor& visitor);
 
 /// Outputs of every stage by tile.
 struct TileOutputs {
+  TileGrid grid;
   std::map<TileKey, TilePoints> points;
   std::map<TileKey, CluxelTile> cluxels;
   std::map<TileKey, SummaryTile> summaries;

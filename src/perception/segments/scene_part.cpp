@@ -28,6 +28,7 @@ std::vector<Value> rowsOf(const std::vector<Value>& all, std::span<const std::ui
 SceneCluxels cluxelsOf(const SceneCluxels& all, std::span<const std::uint32_t> kept,
                        const std::vector<std::uint32_t>& number, const std::vector<std::uint32_t>& primitive) {
   SceneCluxels part;
+  part.grid = all.grid;
   part.scans = all.scans;
   part.name = rowsOf(all.name, kept), part.seed = rowsOf(all.seed, kept);
   part.center = rowsOf(all.center, kept), part.extent = rowsOf(all.extent, kept);

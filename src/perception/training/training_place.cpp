@@ -15,11 +15,11 @@ void countTruth(const TileOutputs& tiles, const scan::Scan& scan, const scan::Po
     if (truth.primitive[i] < 0) continue;
     const Eigen::Vector3d p_map =
         scan::toMap(scan.T_map_sensor, {scan.points.x[i], scan.points.y[i], scan.points.z[i]});
-    const TileKey key = tileOf(p_map);
+    const TileKey key = tiles.grid.tileOf(p_map);
     const auto points = tiles.points.find(key);
     if (points == tiles.points.end()) continue;
     const auto finder = finders.try_emplace(key, points->second, thin).first;
-    const std::uint32_t kept = finder->second.find(localPoint(key, p_map));
+    const std::uint32_t kept = finder->second.find(localPoint(tiles.grid, key, p_map));
     if (kept == RepresentativeFinder::kNone) continue;
     ++counts.at(key)[tiles.cluxels.at(key).point_cluxel[kept]][static_cast<std::size_t>(truth.primitive[i])];
   }

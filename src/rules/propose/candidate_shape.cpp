@@ -22,9 +22,10 @@ struct CellRange {
 };
 
 CellRange cellsOf(const perception::SceneCluxels& all, std::uint32_t cluxel) {
+  const Point2 center = (all.center[cluxel] - all.grid.corner()).head<2>();
   const Point2 half = all.extent[cluxel].head<2>().cast<double>() / 2;
-  const Point2 low = (all.center[cluxel].head<2>() - half) / perception::kFootprintCell_m;
-  const Point2 high = (all.center[cluxel].head<2>() + half) / perception::kFootprintCell_m;
+  const Point2 low = (center - half) / perception::kFootprintCell_m;
+  const Point2 high = (center + half) / perception::kFootprintCell_m;
   CellRange range{static_cast<std::int64_t>(std::floor(low.x())), static_cast<std::int64_t>(std::floor(low.y()))};
   // A cluxel is at most one ball wide, so that these ranges are short; the bound of 40 guards against broken input.
   range.last_x = std::min(range.first_x + 40, static_cast<std::int64_t>(std::floor(high.x())));

@@ -51,7 +51,7 @@ void fill(const BoxPrimitive& box, std::size_t number, std::uint32_t& next, std:
         const Eigen::Vector3d p = Eigen::Vector3d(x + 0.5, y + 0.5, z + 0.5).cwiseProduct(step) - box.size / 2;
         const Eigen::Vector3d rotated(c * p.x() - s * p.y(), s * p.x() + c * p.y(), p.z());
         const Eigen::Vector3d center = box.center + rotated;
-        seedlings.push_back({{perception::tileOf(center), next++}, center, extent.cast<float>(), number});
+        seedlings.push_back({{perception::TileGrid().tileOf(center), next++}, center, extent.cast<float>(), number});
       }
 }
 

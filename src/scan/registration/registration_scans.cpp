@@ -39,42 +39,42 @@ Column columnOf(const Eigen::Vector3d& p, double edge_m) {
 }
 
 /// Which points lie where the scan has something higher than the ground: these tell about the horizontal position.
-std::vector<bool> areTall(const std::vector<Eigen::Vector3d>& p_map) {
+std::vector<bool> areTall(const std::vector<Eigen::Vector3d>& points) {
   constexpr double kEdge_m = 1, kTall_m = 0.5;
   std::map<Column, std::pair<double, double>> heights;
-  for (const Eigen::Vector3d& p : p_map) {
+  for (const Eigen::Vector3d& p : points) {
     auto& [low, high] = heights.try_emplace(columnOf(p, kEdge_m), p.z(), p.z()).first->second;
     low = std::min(low, p.z()), high = std::max(high, p.z());
   }
   std::vector<bool> are_tall;
-  for (const Eigen::Vector3d& p : p_map) {
+  for (const Eigen::Vector3d& p : points) {
     const auto& [low, high] = heights.at(columnOf(p, kEdge_m));
     are_tall.push_back(high - low > kTall_m);
   }
   return are_tall;
 }
 
-/// Some `count` of the points, half of them tall if there are as many. They are those of some squares of the map, and
-/// the squares for few points are among those for more: so points that lie near each other in two scans are chosen in
-/// both.
+/// Some `count` of the points, half of them tall if there are as many. They are those of some squares of the outer
+/// frame, whatever the map's origin, and the squares for few points are among those for more: so points that lie near
+/// each other in two scans are chosen in both.
 std::vector<std::size_t> chosenPoints(const std::vector<Eigen::Vector3f>& p_sensor,
-                                      const Eigen::Isometry3d& T_map_sensor, std::size_t count) {
+                                      const Eigen::Isometry3d& T_outer_sensor, std::size_t count) {
   constexpr double kSquare_m = 4;
   std::vector<std::size_t> chosen(p_sensor.size());
   std::iota(chosen.begin(), chosen.end(), std::size_t{0});
   if (count >= p_sensor.size()) return chosen;
-  std::vector<Eigen::Vector3d> p_map;
-  for (const Eigen::Vector3f& p : p_sensor) p_map.push_back(T_map_sensor * p.cast<double>());
-  const std::vector<bool> are_tall = areTall(p_map);
+  std::vector<Eigen::Vector3d> p_outer;
+  for (const Eigen::Vector3f& p : p_sensor) p_outer.push_back(T_outer_sensor * p.cast<double>());
+  const std::vector<bool> are_tall = areTall(p_outer);
   const auto tall = static_cast<std::size_t>(std::count(are_tall.begin(), are_tall.end(), true));
-  const std::size_t flat = p_map.size() - tall;
+  const std::size_t flat = p_outer.size() - tall;
   const std::size_t tall_count = std::min(tall, std::max(count / 2, count - std::min(count, flat)));
   const auto share = [](std::size_t part, std::size_t all) {
     return static_cast<double>(part) / static_cast<double>(std::max<std::size_t>(all, 1));
   };
   const double tall_share = share(tall_count, tall), flat_share = share(count - tall_count, flat);
   std::erase_if(chosen, [&](std::size_t i) {
-    const auto [x, y] = columnOf(p_map[i], kSquare_m);
+    const auto [x, y] = columnOf(p_outer[i], kSquare_m);
     return hashedShare(0, static_cast<std::uint64_t>(x), static_cast<std::uint64_t>(y)) >=
            (are_tall[i] ? tall_share : flat_share);
   });
@@ -123,7 +123,8 @@ RegistrationScans loadForRegistration(const ScanSet& set, const RegistrationPara
     const Scan scan = set.load(i);
     ids[i] = scan.id;
     std::vector<Eigen::Vector3f> thinned = thinnedToVoxels(scan.points, {.voxel_m = params.voxel_m});
-    std::vector<std::size_t> compared = chosenPoints(thinned, scan.T_map_sensor, params.max_compared);
+    const Eigen::Isometry3d T_outer_sensor = Eigen::Translation3d(set.mapOrigin()) * scan.T_map_sensor;
+    std::vector<std::size_t> compared = chosenPoints(thinned, T_outer_sensor, params.max_compared);
     clouds[i].emplace(std::move(thinned), std::move(compared));
     progress.step();
   });

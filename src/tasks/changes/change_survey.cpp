@@ -139,7 +139,7 @@ class Survey {
   }
 
   PointCells cellsIn(const mapping::MapRegion& region, const std::vector<bool>& may_change) {
-    CellSums sums;
+    CellSums sums(region.scene.cluxels.grid);
     for (const TimedScan& scan : scans_)
       regions_.forEachPoint(region, scan.cloud, [&](const Eigen::Vector3d& p_map, std::uint32_t cluxel, std::size_t) {
         if (may_change[cluxel]) sums.add(scan.time, scan.number, p_map, cluxel);

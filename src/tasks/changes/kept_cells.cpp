@@ -13,11 +13,11 @@ namespace {
 
 /// Whether tiles for which `is_beyond` holds lie within reach of cells at the place.
 template <typename IsBeyond>
-bool isNearTile(const Eigen::Vector3d& place, const IsBeyond& is_beyond) {
+bool isNearTile(const perception::TileGrid& grid, const Eigen::Vector3d& place, const IsBeyond& is_beyond) {
   constexpr double kReach_m = kNearCells_m + 0.01;
   for (const double x : {-kReach_m, 0.0, kReach_m})
     for (const double y : {-kReach_m, 0.0, kReach_m})
-      if (is_beyond(perception::tileOf(place + Eigen::Vector3d(x, y, 0)))) return true;
+      if (is_beyond(grid.tileOf(place + Eigen::Vector3d(x, y, 0)))) return true;
   return false;
 }
 
@@ -50,9 +50,11 @@ void KeptCells::add(const mapping::MapRegion& region, std::vector<PointCell> cel
   for (const PointCell& cell : cells)
     if (cell.is_of_changed_cluxel) of_cluxels_.push_back(cell);
   settleOfCluxels(cluxels);
+  grid_ = region.scene.cluxels.grid;
   std::vector<bool> is_kept = changedOrNear(cells);
   const auto is_outside = [&](const perception::TileKey& tile) { return !region.tiles.contains(tile); };
-  for (std::size_t i = 0; i < cells.size(); ++i) is_kept[i] = is_kept[i] || isNearTile(cells[i].place, is_outside);
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    is_kept[i] = is_kept[i] || isNearTile(grid_, cells[i].place, is_outside);
   appendChosen(std::exchange(cells, {}), is_kept, open_);
   settle(unread);
 }
@@ -71,7 +73,7 @@ void KeptCells::settle(const perception::TileSet& unread) {
   const CellNeighbours neighbours(open_);
   const auto is_unread = [&](const perception::TileKey& tile) { return unread.contains(tile); };
   std::vector<bool> reaches_unread(open_.size()), settles(open_.size()), is_open(open_.size());
-  for (std::size_t i = 0; i < open_.size(); ++i) reaches_unread[i] = isNearTile(open_[i].place, is_unread);
+  for (std::size_t i = 0; i < open_.size(); ++i) reaches_unread[i] = isNearTile(grid_, open_[i].place, is_unread);
   std::vector<bool> stays = reaches_unread;
   const auto markNear = [&](const ChangeGroup& group, std::vector<bool>& marked) {
     for (const std::uint32_t cell : group) neighbours.forEach(cell, [&](std::uint32_t near) { marked[near] = true; });

@@ -30,6 +30,7 @@ class KeptCells {
   void settle(const perception::TileSet& unread);
   void settleOfCluxels(const KeptCluxels& cluxels);
 
+  perception::TileGrid grid_;                ///< of the map
   std::vector<PointCell> open_;              ///< those that reach to unread tiles, with what is near
   std::vector<PointCell> of_cluxels_;        ///< those of changed cluxels of which the clusters are not yet known
   std::vector<PointCell> settled_;           ///< may hold a cell several times

@@ -33,11 +33,11 @@ BlockKey keyOf(const Eigen::Vector3d& p, double edge_m) {
 }
 
 /// Eight bits for x and for y, which are below 160, and the rest for z.
-CellKey cellOf(const Eigen::Vector3d& p_map) {
+CellKey cellOf(const perception::TileGrid& grid, const Eigen::Vector3d& p_map) {
   constexpr double kPerTile = perception::kTileSize_m / kCell_m;
   constexpr std::int64_t kLowest = -(std::int64_t{1} << 40);
-  const perception::TileKey tile = perception::tileOf(p_map);
-  const Eigen::Vector3d local = p_map - perception::cornerOf(tile);
+  const perception::TileKey tile = grid.tileOf(p_map);
+  const Eigen::Vector3d local = grid.fromMap(p_map) - perception::TileGrid().cornerOf(tile);
   const auto number = [](double at) {
     return static_cast<std::uint64_t>(std::clamp(std::floor(at / kCell_m), 0.0, kPerTile - 1));
   };
@@ -56,7 +56,7 @@ std::size_t CellSums::Hash::operator()(const CellKey& key) const {
 }
 
 void CellSums::add(std::size_t time, std::uint32_t scan, const Eigen::Vector3d& p_map, std::uint32_t cluxel) {
-  PointSums& cell = sums_[cellOf(p_map)];
+  PointSums& cell = sums_[cellOf(grid_, p_map)];
   if (cell.count[time] == 0) cell.cluxel[time] = cluxel;
   cell.sum[time] += p_map;
   ++cell.count[time];

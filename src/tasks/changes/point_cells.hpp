@@ -56,6 +56,7 @@ inline constexpr std::size_t kBefore = 0, kAfter = 1;
 /// Gathers points in cells.
 class CellSums {
  public:
+  explicit CellSums(const perception::TileGrid& grid) : grid_(grid) {}
   /// `time`: kBefore or kAfter. `cluxel`: number in the scene of a region.
   void add(std::size_t time, std::uint32_t scan, const Eigen::Vector3d& p_map, std::uint32_t cluxel);
   /// The cells; the sums are empty afterwards.
@@ -71,6 +72,7 @@ class CellSums {
     std::array<std::uint32_t, 2> count{}, cluxel{};
     std::array<ScanNumbers, 2> scans{};
   };
+  perception::TileGrid grid_;
   std::unordered_map<CellKey, PointSums, Hash> sums_;
 };
 

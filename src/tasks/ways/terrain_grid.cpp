@@ -33,9 +33,10 @@ GridFrame boundedFrame(const GridFrame& frame, double columns, double rows) {
   return bounded;
 }
 
-/// Cells begin at multiples of their edge.
-GridFrame frameOfArea(const Eigen::AlignedBox2d& area, double cell_m) {
-  const Eigen::Vector2d low = (area.min() / cell_m).array().floor() * cell_m;
+/// Cells begin at multiples of their edge from the corner of a tile.
+GridFrame frameOfArea(const Eigen::AlignedBox2d& area, const perception::TileGrid& tiles, double cell_m) {
+  const Eigen::Vector2d corner = tiles.corner().head<2>();
+  const Eigen::Vector2d low = corner.array() + ((area.min() - corner) / cell_m).array().floor() * cell_m;
   const Eigen::Vector2d count = ((area.max() - low) / cell_m).array().ceil();
   return boundedFrame({low.x(), low.y(), cell_m, 0, 0}, std::max(1.0, count.x()), std::max(1.0, count.y()));
 }
@@ -47,7 +48,8 @@ GridFrame frameOf(const mapping::TileStages& stages, double cell_m) {
     low = {std::min(low.x, key.x), std::min(low.y, key.y)};
     high = {std::max(high.x, key.x), std::max(high.y, key.y)};
   }
-  GridFrame frame{low.x * kTileSize_m, low.y * kTileSize_m, cell_m, 0, 0};
+  const Eigen::Vector3d corner = stages.grid().cornerOf(low);
+  GridFrame frame{corner.x(), corner.y(), cell_m, 0, 0};
   const double columns = std::ceil((high.x - low.x + 1) * kTileSize_m / cell_m);
   const double rows = std::ceil((high.y - low.y + 1) * kTileSize_m / cell_m);
   return boundedFrame(frame, columns, rows);
@@ -73,7 +75,7 @@ void fillGround(const mapping::TileStages& stages, TerrainGrid& grid) {
   std::vector<std::uint8_t> measured(frame.size(), 0);
   for (const auto& [key, tile] : stages.ground()) {
     const auto ring = ringIn(stages.ground(), key);
-    const Eigen::Vector3d corner = cornerOf(key);
+    const Eigen::Vector3d corner = stages.grid().cornerOf(key);
     const int first_column = static_cast<int>(std::round((corner.x() - frame.min_x) / frame.cell_m));
     const int first_row = static_cast<int>(std::round((corner.y() - frame.min_y) / frame.cell_m));
     const int count = static_cast<int>(std::round(kTileSize_m / frame.cell_m));
@@ -82,7 +84,7 @@ void fillGround(const mapping::TileStages& stages, TerrainGrid& grid) {
       if (!frame.holds(column, row)) continue;
       const std::uint32_t cell = frame.index(column, row);
       const Eigen::Vector2d local = frame.centreOf(cell) - corner.head<2>();
-      grid.height[cell] = static_cast<float>(groundHeightAt(ring, local.x(), local.y()));
+      grid.height[cell] = static_cast<float>(corner.z() + groundHeightAt(ring, local.x(), local.y()));
       measured[cell] = isMeasured(tile, local.array() - frame.cell_m / 2, frame.cell_m) ? 1 : 0;
     }
   }
@@ -206,7 +208,7 @@ std::vector<CellThing> thingsOf(const mapping::MapReader& map, const TerrainPara
   for (const auto& [key, tile] : stages.cluxels()) {
     const perception::TilePoints& points = stages.points().at(key);
     const auto ring = ringIn(stages.ground(), key);
-    const Eigen::Vector3d corner = cornerOf(key);
+    const Eigen::Vector3d corner = stages.grid().cornerOf(key);
     for (std::size_t i = 0; i < points.size(); ++i) {
       const auto cell = grid.frame.cellAt({corner.x() + points.x[i], corner.y() + points.y[i]});
       if (!cell) continue;
@@ -216,7 +218,7 @@ std::vector<CellThing> thingsOf(const mapping::MapReader& map, const TerrainPara
       const bool counts = object == mapping::kNoObject || is_ground || is_left_out.empty() || !is_left_out[object];
       if (!counts && above <= params.highest_m) low.addLeftOut(*cell);
       if (std::abs(above) < params.lowest_m) {
-        if (counts) low.add(*cell, corner + Eigen::Vector3d(points.x[i], points.y[i], points.z[i] - corner.z()));
+        if (counts) low.add(*cell, corner + Eigen::Vector3d(points.x[i], points.y[i], points.z[i]));
       } else if (!is_ground && above > 0 && above <= params.highest_m) {
         found.push_back({*cell, object == mapping::kNoObject ? kUnnamedThing : object});
       }
@@ -237,7 +239,8 @@ std::optional<std::uint32_t> GridFrame::cellAt(const Eigen::Vector2d& p_map) con
 TerrainGrid terrainOf(const mapping::MapReader& map, const TerrainParams& params,
                       const std::vector<bool>& is_left_out) {
   TerrainGrid grid;
-  grid.frame = params.area ? frameOfArea(*params.area, params.cell_m) : frameOf(map.stages(), params.cell_m);
+  grid.frame = params.area ? frameOfArea(*params.area, map.stages().grid(), params.cell_m)
+                           : frameOf(map.stages(), params.cell_m);
   const std::size_t size = grid.frame.size();
   grid.height.assign(size, std::numeric_limits<float>::quiet_NaN());
   grid.seen.assign(size, 0);

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where the tiles of a stored map lie.
+#pragma once
+
+#include "perception/tile.hpp"
+#include "rdf/file/environment.hpp"
+
+namespace cluxel::mapping {
+
+/// Comes before the first scan is stored. A map whose origin lies at whole tiles stores nothing.
+void storeGrid(rdf::WriteTransaction& transaction, const perception::TileGrid& grid);
+/// Earlier versions had tiles at whole multiples of their size in the map frame, and stored no grid. So their maps are
+/// read as they were written. Throws Error (StoreUnavailable) when it is damaged.
+perception::TileGrid storedGrid(const rdf::ReadTransaction& transaction);
+
+}  // namespace cluxel::mapping
