@@ -14,6 +14,7 @@
 #include "mapping/damaged_map.hpp"
 #include "mapping/layers/stored_layers.hpp"
 #include "mapping/map_tables.hpp"
+#include "mapping/stored_grid.hpp"
 #include "mapping/tile_regions.hpp"
 #include "perception/crf/labelling.hpp"
 
@@ -49,7 +50,8 @@ struct AnsweringTile {
 class RegionAnswers {
  public:
   RegionAnswers(const MapReader& map, TileStages& stages, const TileSet& tiles,
-                const std::map<TileKey, std::uint32_t>& first_cluxel) {
+                const std::map<TileKey, std::uint32_t>& first_cluxel)
+      : grid_(storedGrid(map.transaction())) {
     stages.dropPoints();
     stages.loadPoints(map.transaction(), tiles);
     for (const TileKey& tile : tiles) {
@@ -72,11 +74,11 @@ class RegionAnswers {
     auto tile = tiles_.end();
     for (std::size_t i = 0; i < points.size(); ++i) {
       const Eigen::Vector3d p_map = scan::toMap(cloud.T_map_sensor, {points.x[i], points.y[i], points.z[i]});
-      const TileKey key = perception::tileOf(p_map);
+      const TileKey key = grid_.tileOf(p_map);
       if (tile == tiles_.end() || tile->first != key) tile = tiles_.find(key);
       if (tile == tiles_.end()) continue;
       const AnsweringTile& here = tile->second;
-      const std::uint32_t kept = here.finder.find(perception::localPoint(key, p_map));
+      const std::uint32_t kept = here.finder.find(perception::localPoint(grid_, key, p_map));
       if (kept >= here.cluxels->point_cluxel.size()) failUnfit();
       const std::uint32_t cluxel = here.cluxels->point_cluxel[kept];
       piece.add(i, here.first_cluxel + cluxel, here.labels.label.at(cluxel), here.object.at(cluxel));
@@ -103,6 +105,7 @@ class RegionAnswers {
     return objects;
   }
 
+  perception::TileGrid grid_;
   std::map<TileKey, AnsweringTile> tiles_;
 };
 
@@ -182,10 +185,11 @@ class AnsweredClouds {
   void visitAll(const AnsweredVisit& visit) {
     if (regions_.size() == 1) return visitOneRegion(visit);
     AnswerPieces pieces;
+    const perception::TileGrid grid = storedGrid(map_.transaction());
     for (const TileSet& region : regions_) {
       const RegionAnswers answers(map_, stages_, region, first_cluxel_);
       for (const Cloud& cloud : clouds_)
-        if (!tilesInBounds(cloud, region).empty())
+        if (!tilesInBounds(cloud, region, grid).empty())
           if (const AnswerPiece piece = answers.answersFor(cloud, map_.pointsOf(cloud.id)); !piece.point.empty())
             pieces.add(cloud, piece);
     }

@@ -16,6 +16,7 @@
 #include "mapping/damaged_map.hpp"
 #include "mapping/layers/stored_layers.hpp"
 #include "mapping/map_tables.hpp"
+#include "mapping/stored_grid.hpp"
 #include "perception/segments/summary_tile.hpp"
 
 namespace cluxel::tasks {
@@ -88,7 +89,8 @@ ObjectOutline outlineOf(std::string_view record) {
 /// Reads the tiles of a map into records.
 class OutlineRecords {
  public:
-  OutlineRecords(const mapping::MapReader& map, std::size_t bytes_in_memory) : map_(map), records_(bytes_in_memory) {
+  OutlineRecords(const mapping::MapReader& map, std::size_t bytes_in_memory)
+      : map_(map), grid_(mapping::storedGrid(map.transaction())), records_(bytes_in_memory) {
     std::uint32_t number = 0;
     for (const perception::TileKey& tile : mapping::storedTiles(map.transaction())) addTile(tile, number++);
   }
@@ -123,8 +125,7 @@ class OutlineRecords {
     for (const mapping::TileLayer::Share& share : layer->shares) of_share.push_back(&outlines[numberOf(share.object)]);
     for (std::size_t c = 0; c < summary.size(); ++c)
       if (const std::uint32_t share = layer->share_of_cluxel[c]; share != mapping::kNoShare)
-        addCluxel(perception::cornerOf(tile) + summary.box_min[c].cast<double>(), summary.size_m[c],
-                  *of_share.at(share));
+        addCluxel(grid_.cornerOf(tile) + summary.box_min[c].cast<double>(), summary.size_m[c], *of_share.at(share));
     for (auto& [object, outline] : outlines) {
       thin(outline);
       records_.add(recordOf(object, number, outline));
@@ -139,6 +140,7 @@ class OutlineRecords {
   }
 
   const mapping::MapReader& map_;
+  const perception::TileGrid grid_;
   SortedRecords records_;
 };
 
