@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// All reads of a MapReader use one snapshot of the file.
+// All reads of a MapReader use one snapshot of the file, and share what they read with other readers of its commit.
 #include "mapping/map_reader.hpp"
 
 #include <algorithm>
@@ -7,33 +7,25 @@
 #include <set>
 
 #include "cluxel/error.hpp"
-#include "mapping/build/tile_stages.hpp"
 #include "mapping/build/way_tiles.hpp"
 #include "mapping/clouds/scan_store.hpp"
+#include "mapping/commit_layers.hpp"
 #include "mapping/facts/object_geometry.hpp"
 #include "mapping/layers/stored_layers.hpp"
 #include "mapping/map_part.hpp"
 #include "mapping/map_state.hpp"
-#include "mapping/statements/overruled_objects.hpp"
 #include "rdf/iri.hpp"
 
 namespace cluxel::mapping {
 
+/// The layers are shared with other readers of the commit; transaction and quads are its own.
 struct MapReader::Impl {
   std::shared_ptr<rdf::Environment> environment;
   rdf::ReadTransaction transaction;
   rdf::QuadReader quads;
   MapState state;
-  std::optional<MapInputs> inputs;
-  std::optional<perception::LabelModel> model;
-  std::optional<rdf::ClassNames> class_names;
-  std::optional<TileStages> stages;
-  std::optional<perception::Scene> scene;
-  std::optional<std::vector<rules::SemanticObject>> objects;
-  std::optional<std::vector<ContentHash>> object_ids, primitive_ids;
-  std::optional<std::vector<OverruledObject>> overruled;
-  std::vector<std::uint32_t> object_of_cluxel;
-  std::map<perception::TileKey, std::uint32_t> first_cluxel;
+  std::shared_ptr<CommitLayers> layers;
+  HeldStages stages;
 
   explicit Impl(std::shared_ptr<rdf::Environment> opened)
       : environment(std::move(opened)), transaction(environment->read()), quads(transaction) {
@@ -42,16 +34,15 @@ struct MapReader::Impl {
       throw Error(ErrorKind::StoreUnavailable,
                   environment->file().string() + ": holds no map (or its first build never committed); build it");
     state = *stored;
+    layers = CommitLayers::of(quads);
   }
 
   const MapInputs& readInputs() {
-    if (!inputs) inputs = storedInputs(transaction);
-    return *inputs;
+    return layers->inputs.get([&] { return storedInputs(transaction); });
   }
 
   const std::vector<rules::SemanticObject>& readObjects() {
-    if (!objects) objects = storedObjects(transaction);
-    return *objects;
+    return layers->objects.get([&] { return storedObjects(transaction); });
   }
 
   /// The program that built the map accepted this model. A fault now means that another version of Cluxel built the
@@ -66,22 +57,29 @@ struct MapReader::Impl {
     }
   }
 
-  const TileStages& readStages() {
-    if (stages) return *stages;
-    stages.emplace(readModel(), readInputs().params);
-    stages->load(transaction);
-    std::uint32_t next = 0;
-    for (const auto& [key, tile] : stages->summaries()) {
-      first_cluxel.emplace(key, next);
-      next += static_cast<std::uint32_t>(tile.size());
-    }
-    object_of_cluxel = objectOfCluxel({readObjects(), {}}, next);
-    return *stages;
+  const perception::LabelModel& readModel() {
+    return layers->model.get([&] { return storedModel(); });
   }
 
-  const perception::LabelModel& readModel() {
-    if (!model) model = storedModel();
-    return *model;
+  const TileStages& readStages(bool with_points = false) {
+    return layers->readStages(transaction, readModel(), readInputs().params, with_points, stages);
+  }
+
+  const perception::Scene& readScene() {
+    return layers->scene.get([&] { return readStages().scene(storedClouds(transaction)); });
+  }
+
+  const CluxelNumbers& readCluxelNumbers() {
+    return layers->cluxel_numbers.get([&] {
+      CluxelNumbers numbers;
+      std::uint32_t next = 0;
+      for (const auto& [key, tile] : readStages().summaries()) {
+        numbers.first_of_tile.emplace(key, next);
+        next += static_cast<std::uint32_t>(tile.size());
+      }
+      numbers.object = objectOfCluxel({readObjects(), {}}, next);
+      return numbers;
+    });
   }
 
   std::optional<MapPart> partAroundThing(const ThingPlace& thing, int rings, double near_m) {
@@ -97,12 +95,6 @@ struct MapReader::Impl {
     tiles.insert(more.begin(), more.end());
     TileStages here(readModel(), readInputs().params);
     return partOfMap(transaction, here, tiles, 0);
-  }
-
-  const TileStages& readPoints() {
-    readStages();
-    stages->loadPoints(transaction);  // those that are not there
-    return *stages;
   }
 };
 
@@ -138,8 +130,7 @@ bool MapReader::isFinished() const {
 }
 
 const rdf::ClassNames& MapReader::classNames() const {
-  if (!impl_->class_names) impl_->class_names = rdf::classNamesOf(impl_->quads);
-  return *impl_->class_names;
+  return impl_->layers->class_names.get([&] { return rdf::classNamesOf(impl_->quads); });
 }
 
 std::vector<Cloud> MapReader::clouds() const {
@@ -152,13 +143,11 @@ scan::Scan MapReader::scanOf(const scan::ScanId& cloud) const {
   return storedScan(impl_->transaction, cloud);
 }
 const std::vector<ContentHash>& MapReader::objectIds() const {
-  if (!impl_->object_ids) impl_->object_ids = storedObjectIds(impl_->transaction);
-  return *impl_->object_ids;
+  return impl_->layers->object_ids.get([&] { return storedObjectIds(impl_->transaction); });
 }
 
 const std::vector<ContentHash>& MapReader::primitiveIds() const {
-  if (!impl_->primitive_ids) impl_->primitive_ids = storedPrimitives(impl_->transaction);
-  return *impl_->primitive_ids;
+  return impl_->layers->primitive_ids.get([&] { return storedPrimitives(impl_->transaction); });
 }
 
 std::optional<MapPart> MapReader::partAroundObject(const ContentHash& object, int rings, double near_m) const {
@@ -205,8 +194,7 @@ std::string MapReader::classOf(std::uint32_t object) const {
   return record ? record->class_iri : std::string();
 }
 const std::vector<OverruledObject>& MapReader::overruled() const {
-  if (!impl_->overruled) impl_->overruled = storedOverruled(impl_->transaction);
-  return *impl_->overruled;
+  return impl_->layers->overruled.get([&] { return storedOverruled(impl_->transaction); });
 }
 
 const rules::SemanticObject& MapReader::byRules(const rules::SemanticObject& object) const {
@@ -250,15 +238,14 @@ const perception::LabelModel& MapReader::model() const {
 }
 
 const perception::Scene& MapReader::scene() const {
-  if (!impl_->scene) impl_->scene = impl_->readStages().scene(clouds());
-  return *impl_->scene;
+  return impl_->readScene();
 }
 
 const TileStages& MapReader::stages() const {
   return impl_->readStages();
 }
 const TileStages& MapReader::stagesWithPoints() const {
-  return impl_->readPoints();
+  return impl_->readStages(true);
 }
 WayGraph MapReader::ways() const {
   return storedWays(impl_->transaction);
@@ -268,9 +255,10 @@ WayGraph MapReader::measuredWays() const {
 }
 
 PointAnswers MapReader::answersFor(const Cloud& cloud) const {
-  const TileStages& stages = impl_->readPoints();
+  const TileStages& stages = impl_->readStages(true);
   const perception::Scene& all = scene();
-  const perception::ThinParams& thin = impl_->model->perception.thin;
+  const CluxelNumbers& numbers = impl_->readCluxelNumbers();
+  const perception::ThinParams& thin = model().perception.thin;
   const scan::ScanPoints points = pointsOf(cloud.id);
   const perception::TileGrid& grid = stages.grid();
   std::map<perception::TileKey, perception::RepresentativeFinder> finders;
@@ -280,10 +268,10 @@ PointAnswers MapReader::answersFor(const Cloud& cloud) const {
     const perception::TileKey tile = grid.tileOf(p_map);
     const auto finder = finders.try_emplace(tile, stages.points().at(tile), thin).first;
     const std::uint32_t kept = finder->second.find(localPoint(grid, tile, p_map));
-    const std::uint32_t cluxel = impl_->first_cluxel.at(tile) + stages.cluxels().at(tile).point_cluxel.at(kept);
+    const std::uint32_t cluxel = numbers.first_of_tile.at(tile) + stages.cluxels().at(tile).point_cluxel.at(kept);
     answers.cluxel.push_back(cluxel);
     answers.label.push_back(static_cast<std::uint8_t>(all.cluxels.label[cluxel]));
-    answers.object.push_back(impl_->object_of_cluxel[cluxel]);
+    answers.object.push_back(numbers.object[cluxel]);
   }
   return answers;
 }

@@ -176,13 +176,10 @@ HttpResponse MapService::answerOwn(const Route& route) const {
 
 HttpResponse MapService::pageOf(ServedMap& map) const {
   if (!options_.page) return startPage({map.name()});
-  const std::string slot = "page of " + map.name();
   std::shared_ptr<const std::string> page;
   map.withReader([&](const mapping::MapReader& reader) {
-    page = std::static_pointer_cast<const std::string>(reader.quads().kept(slot));
-    if (page) return;
-    page = std::make_shared<const std::string>(options_.page(reader, map.name()));
-    reader.quads().keep(slot, page);
+    const auto make = [&] { return std::make_shared<const std::string>(options_.page(reader, map.name())); };
+    page = std::static_pointer_cast<const std::string>(map.keptOrMade(reader.quads(), "page of " + map.name(), make));
   });
   return {200, "text/html; charset=utf-8", *page, {}};
 }

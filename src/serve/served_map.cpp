@@ -11,9 +11,9 @@
 namespace cluxel::serve {
 
 ServedMap::ServedMap(std::string name, const std::filesystem::path& file)
-    : name_(std::move(name)), map_(std::filesystem::absolute(file)) {
-  map_.reader();  // throws when the file is no map
-  map_.release();
+    : name_(std::move(name)), keeper_(std::filesystem::absolute(file)) {
+  keeper_.reader();  // throws when the file is no map
+  keeper_.release();
 }
 
 bool ServedMap::isUnfinished() const {
@@ -21,18 +21,38 @@ bool ServedMap::isUnfinished() const {
 }
 
 void ServedMap::withReader(const std::function<void(const mapping::MapReader&)>& use) {
-  const std::lock_guard lock(mutex_);
-  use(map_.reader());
+  keepNewest();
+  use(mapping::MapReader(file()));
+}
+
+void ServedMap::keepNewest() {
+  const std::lock_guard lock(keeper_mutex_);
+  keeper_.reader();
+}
+
+std::shared_ptr<const void> ServedMap::keptOrMade(const rdf::QuadReader& snapshot, const std::string& what,
+                                                  const std::function<std::shared_ptr<const void>()>& make) {
+  if (auto kept = snapshot.kept(what)) return kept;
+  const std::lock_guard lock(makingOf(what));
+  if (auto kept = snapshot.kept(what)) return kept;
+  std::shared_ptr<const void> made = make();
+  snapshot.keep(what, made);
+  return made;
+}
+
+std::mutex& ServedMap::makingOf(const std::string& what) {
+  const std::lock_guard lock(making_mutex_);
+  return making_[what];
 }
 
 void ServedMap::releaseOldCommit() {
-  const std::lock_guard lock(mutex_);
-  map_.releaseIfOld();
+  const std::lock_guard lock(keeper_mutex_);
+  keeper_.releaseIfOld();
 }
 
 void ServedMap::release() {
-  const std::lock_guard lock(mutex_);
-  map_.release();
+  const std::lock_guard lock(keeper_mutex_);
+  keeper_.release();
 }
 
 std::shared_ptr<const ObjectTable> objectsOf(const rdf::QuadReader& snapshot) {

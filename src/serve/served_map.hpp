@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -30,22 +31,32 @@ class ServedMap {
   ServedMap(std::string name, const std::filesystem::path& file);
 
   const std::string& name() const { return name_; }
-  const std::filesystem::path& file() const { return map_.file(); }
+  const std::filesystem::path& file() const { return keeper_.file(); }
   /// A snapshot of the newest commit, for one request.
-  rdf::QuadReader quads() const { return map_.quads(); }
+  rdf::QuadReader quads() const { return keeper_.quads(); }
   /// Whether the newest commit is one of a build that is not finished.
   bool isUnfinished() const;
-  /// Calls `use` with the layers of the newest commit; one caller at a time.
+  /// Calls `use` with the layers of the newest commit. Callers do not wait for each other, but for layers that another
+  /// one is reading: each layer of a commit is read once, and kept as long as the commit is the newest.
   void withReader(const std::function<void(const mapping::MapReader&)>& use);
-  /// Drops what withReader() keeps of a commit that is not the newest any more.
+  /// What is kept with the commit of `snapshot` under the name `what`, made by the first who asks. Others who ask for
+  /// it wait for it.
+  std::shared_ptr<const void> keptOrMade(const rdf::QuadReader& snapshot, const std::string& what,
+                                         const std::function<std::shared_ptr<const void>()>& make);
+  /// Lets go of layers that are kept of a commit that is not the newest any more. Requests that read them go on.
   void releaseOldCommit();
-  /// Drops what withReader() keeps, whatever its commit: called before a write.
+  /// Lets go of the layers that are kept, whatever their commit: called before a write.
   void release();
 
  private:
+  void keepNewest();
+  std::mutex& makingOf(const std::string& what);
+
   std::string name_;
-  std::mutex mutex_;
-  mapping::NewestMap map_;
+  std::mutex keeper_mutex_;    ///< never held while a request computes
+  mapping::NewestMap keeper_;  ///< its reader reads nothing; it holds what others of its commit have read
+  std::mutex making_mutex_;    ///< guards making_
+  std::map<std::string, std::mutex> making_;
 };
 
 /// The objects of the snapshot, read once for each commit.

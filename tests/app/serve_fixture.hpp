@@ -109,7 +109,10 @@ class Served {
 
   int port() const { return port_; }
   void signal(int number) const { ::kill(pid_, number); }
-  bool isRunning() const { return pid_ > 0 && ::waitpid(pid_, nullptr, WNOHANG) == 0; }
+  bool isRunning() {
+    if (pid_ > 0 && ::waitpid(pid_, nullptr, WNOHANG) != 0) pid_ = -1;
+    return pid_ > 0;
+  }
   /// Its exit code; -1 when a signal ended it.
   int wait() {
     int status = 0;

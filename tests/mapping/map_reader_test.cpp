@@ -241,6 +241,47 @@ TEST_F(MapReading, OfAnEarlierModelSaysToBuildAnew) {
   }
 }
 
+TEST_F(MapReading, ReadersOfACommitShareWhatTheyRead) {
+  const std::filesystem::path file = folder->path() / "shared.clx";
+  std::filesystem::copy_file(folder->path() / "map.clx", file);
+  const MapReader first(file), second(file);
+  const TileStages& stages = first.stages();
+  EXPECT_EQ(&first.scene(), &second.scene());
+  EXPECT_EQ(&first.objects(), &second.objects());
+  EXPECT_EQ(&stages, &second.stages());
+  const TileStages& with_points = second.stagesWithPoints();
+  EXPECT_TRUE(stages.points().empty()) << "what another reader has in hand stays as it is";
+  EXPECT_FALSE(with_points.points().empty());
+  EXPECT_EQ(&first.stages(), &stages);
+  EXPECT_EQ(&second.stages(), &with_points);
+  EXPECT_EQ(&first.stagesWithPoints(), &with_points);
+  EXPECT_EQ(&MapReader(file).stages(), &with_points);
+  EXPECT_EQ(stages.summaries().size(), with_points.summaries().size());
+}
+
+TEST_F(MapReading, StagesOfOneReaderGetTheirPointsInPlace) {
+  const std::filesystem::path file = folder->path() / "alone.clx";
+  std::filesystem::copy_file(folder->path() / "map.clx", file);
+  const MapReader other(file), alone(file);
+  const TileStages& stages = alone.stages();
+  EXPECT_EQ(&alone.stagesWithPoints(), &stages) << "the other has nothing in hand";
+}
+
+TEST_F(MapReading, ReadersOfDifferentCommitsShareNothing) {
+  const std::filesystem::path file = folder->path() / "commits.clx";
+  std::filesystem::copy_file(folder->path() / "map.clx", file);
+  const MapReader before(file);
+  const auto& objects = before.objects();
+  {
+    WriteTransaction transaction = Environment::open(file, OpenMode::ReadWrite)->write();
+    transaction.putBlock("test", "key", "bytes");
+    transaction.commit();
+  }
+  const MapReader after(file);
+  EXPECT_NE(&after.objects(), &objects);
+  EXPECT_EQ(after.objects().size(), objects.size());
+}
+
 /// Nobody may write the map under its new name as long as it is open under the old one.
 TEST_F(MapReading, AMapThatWasMovedIsClosedWhenItIsAskedFor) {
   const std::filesystem::path file = folder->path() / "asked.clx", moved = folder->path() / "moved.clx";

@@ -7,6 +7,7 @@
 #include <future>
 #include <mutex>
 #include <system_error>
+#include <thread>
 
 #include "app/command.hpp"
 #include "app/map_condition.hpp"
@@ -157,6 +158,25 @@ void announce(const serve::HttpServer& server, const ServeArguments& arguments, 
     session.console.note("the service can be reached from other machines; what it answers is not encrypted");
 }
 
+/// Releases old commits once a second, in a thread of its own: it may have to wait, and a signal must not.
+class Housekeeper {
+ public:
+  explicit Housekeeper(serve::MapService& service)
+      : thread_([&service, ended = ended_.get_future()] {
+          while (ended.wait_for(std::chrono::seconds(1)) != std::future_status::ready) service.tidy();
+        }) {}
+  ~Housekeeper() {
+    ended_.set_value();
+    thread_.join();
+  }
+  Housekeeper(const Housekeeper&) = delete;
+  Housekeeper& operator=(const Housekeeper&) = delete;
+
+ private:
+  std::promise<void> ended_;
+  std::thread thread_;
+};
+
 ExitCode serveMaps(const ServeArguments& arguments, Session& session) {
   AccessLines lines(arguments);
   serve::MapService service(serve::mapArgumentsOf(arguments.maps), session.dataHome(),
@@ -171,7 +191,9 @@ ExitCode serveMaps(const ServeArguments& arguments, Session& session) {
   const auto hasEnded = [&served](int wait_ms) {
     return served.wait_for(std::chrono::milliseconds(wait_ms)) == std::future_status::ready;
   };
-  while (!signals->arrived(std::chrono::seconds(1)) && !hasEnded(0)) service.tidy();
+  const Housekeeper housekeeper(service);
+  while (!signals->arrived(std::chrono::seconds(1)) && !hasEnded(0)) {
+  }
   signals.reset();
   do server.stop();
   while (!hasEnded(50));

@@ -39,13 +39,9 @@ std::array<double, 2> intensityOf(const Parameters& parameters) {
 }
 
 /// Kept with the commit, as long as somebody reads it.
-std::shared_ptr<tasks::PointTileSource> sourceOf(const mapping::MapReader& map) {
-  if (const auto kept = map.quads().kept(kTileSource))
-    return std::const_pointer_cast<tasks::PointTileSource>(
-        std::static_pointer_cast<const tasks::PointTileSource>(kept));
-  auto source = std::make_shared<tasks::PointTileSource>(map);
-  map.quads().keep(kTileSource, source);
-  return source;
+std::shared_ptr<const tasks::PointTileSource> sourceOf(ServedMap& map, const mapping::MapReader& reader) {
+  const auto make = [&reader] { return std::make_shared<const tasks::PointTileSource>(reader); };
+  return std::static_pointer_cast<const tasks::PointTileSource>(map.keptOrMade(reader.quads(), kTileSource, make));
 }
 
 }  // namespace
@@ -58,7 +54,7 @@ HttpResponse answerPointTile(ServedMap& map, const ResourceRequest& asked, const
   const auto state = valueOf(parameters, "state");
   std::optional<tasks::PointTile> tile;
   map.withReader([&](const mapping::MapReader& reader) {
-    const auto source = sourceOf(reader);
+    const auto source = sourceOf(map, reader);
     if (state && *state != source->state())
       throw Refusal(409, "the map has changed since this state; load the page again");
     tile = source->tile(reader, key, intensity);

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <map>
+#include <mutex>
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <tuple>
@@ -91,6 +93,12 @@ class CloudReader {
   ViewTileMap& tiles_;
   ViewTileKey key_;
 };
+
+ViewTileMap pointsOf(const mapping::MapReader& map, const mapping::Cloud& cloud, std::size_t number) {
+  ViewTileMap tiles;
+  CloudReader(map, 1.0, tiles).read(cloud, static_cast<std::uint16_t>(number & 0xffffU));
+  return tiles;
+}
 
 /// The values between which 98 of 100 intensities lie: single bright returns would leave everything else dark.
 std::array<double, 2> intensityRange(const ViewTileMap& tiles) {
@@ -204,41 +212,51 @@ std::string tileStateOf(const mapping::MapReader& map) {
   return hasher.finish().hex();
 }
 
+/// The points of a cloud, which the first who wants them reads.
 struct PointTileSource::CloudPoints {
-  ViewTileMap tiles;
-  std::size_t count = 0;
+  std::mutex mutex;
+  std::optional<ViewTileMap> tiles;
+};
+
+/// A cloud that is given up here stays for those who are using it.
+struct PointTileSource::Kept {
+  std::mutex mutex;
+  std::map<std::size_t, std::shared_ptr<CloudPoints>> clouds;
+  std::deque<std::size_t> order;  ///< of clouds, the longest kept first
+  std::uint64_t points = 0;
 };
 
 PointTileSource::PointTileSource(const mapping::MapReader& map)
-    : state_(tileStateOf(map)), clouds_(cloudsByTime(map)) {}
+    : state_(tileStateOf(map)), clouds_(cloudsByTime(map)), kept_(std::make_unique<Kept>()) {}
 PointTileSource::~PointTileSource() = default;
 PointTileSource::PointTileSource(PointTileSource&&) noexcept = default;
 
-const PointTileSource::CloudPoints& PointTileSource::pointsOf(const mapping::MapReader& map, std::size_t cloud) {
-  if (const auto found = kept_.find(cloud); found != kept_.end()) return *found->second;
-  constexpr std::size_t most_kept = 4'000'000;  // points of some 24 bytes
-  while (!order_.empty() && kept_points_ + clouds_[cloud].point_count > most_kept) {
-    kept_points_ -= kept_.at(order_.front())->count;
-    kept_.erase(order_.front());
-    order_.pop_front();
+std::shared_ptr<PointTileSource::CloudPoints> PointTileSource::placeOf(std::size_t cloud) const {
+  constexpr std::uint64_t most_kept = 4'000'000;  // points of some 24 bytes
+  const std::lock_guard lock(kept_->mutex);
+  if (const auto found = kept_->clouds.find(cloud); found != kept_->clouds.end()) return found->second;
+  while (!kept_->order.empty() && kept_->points + clouds_[cloud].point_count > most_kept) {
+    kept_->points -= clouds_[kept_->order.front()].point_count;
+    kept_->clouds.erase(kept_->order.front());
+    kept_->order.pop_front();
   }
-  auto points = std::make_unique<CloudPoints>();
-  CloudReader(map, 1.0, points->tiles).read(clouds_[cloud], static_cast<std::uint16_t>(cloud & 0xffffU));
-  for (const auto& [key, of_tile] : points->tiles) points->count += of_tile.size();
-  kept_points_ += points->count;
-  order_.push_back(cloud);
-  return *(kept_[cloud] = std::move(points));
+  kept_->points += clouds_[cloud].point_count;
+  kept_->order.push_back(cloud);
+  return kept_->clouds[cloud] = std::make_shared<CloudPoints>();
 }
 
 std::optional<PointTile> PointTileSource::tile(const mapping::MapReader& map, const ViewTileKey& key,
-                                               const std::array<double, 2>& intensity) {
+                                               const std::array<double, 2>& intensity) const {
   const double x = static_cast<double>(key.first) * kViewTile_m, y = static_cast<double>(key.second) * kViewTile_m;
   std::vector<ViewPoint> points;
   for (std::size_t i = 0; i < clouds_.size(); ++i) {
     const mapping::Cloud& cloud = clouds_[i];
     if (cloud.max.x() < x || cloud.min.x() > x + kViewTile_m || cloud.max.y() < y || cloud.min.y() > y + kViewTile_m)
       continue;
-    const ViewTileMap& of_cloud = pointsOf(map, i).tiles;
+    const std::shared_ptr<CloudPoints> cloud_points = placeOf(i);
+    const std::lock_guard lock(cloud_points->mutex);
+    if (!cloud_points->tiles) cloud_points->tiles = pointsOf(map, cloud, i);
+    const ViewTileMap& of_cloud = *cloud_points->tiles;
     if (const auto found = of_cloud.find(key); found != of_cloud.end())
       points.insert(points.end(), found->second.begin(), found->second.end());
   }

@@ -5,8 +5,6 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
-#include <deque>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -50,7 +48,8 @@ std::vector<mapping::Cloud> cloudsByTime(const mapping::MapReader& map);
 std::string tileStateOf(const mapping::MapReader& map);
 
 /// All points of single tiles. Keeps the points of some clouds, since neighbouring tiles are wanted one after the
-/// other. For one state of a map.
+/// other. For one state of a map. Thread-safe: callers wait for each other only when they want a cloud that one of them
+/// is reading.
 class PointTileSource {
  public:
   explicit PointTileSource(const mapping::MapReader& map);
@@ -61,17 +60,16 @@ class PointTileSource {
   /// Absent when no point lies there. `intensity` are the values of bytes 0 and 255. `map` is the one of the
   /// constructor, or another reader of its state. Cost: the points of the clouds that reach the tile.
   std::optional<PointTile> tile(const mapping::MapReader& map, const ViewTileKey& key,
-                                const std::array<double, 2>& intensity);
+                                const std::array<double, 2>& intensity) const;
 
  private:
   struct CloudPoints;
-  const CloudPoints& pointsOf(const mapping::MapReader& map, std::size_t cloud);
+  struct Kept;
+  std::shared_ptr<CloudPoints> placeOf(std::size_t cloud) const;
 
   std::string state_;
   std::vector<mapping::Cloud> clouds_;  ///< by time
-  std::map<std::size_t, std::unique_ptr<CloudPoints>> kept_;
-  std::deque<std::size_t> order_;  ///< of kept_, the longest kept first
-  std::size_t kept_points_ = 0;
+  std::unique_ptr<Kept> kept_;
 };
 
 /// A line of JSON (origin, size, zQuantum, pointsTo), then the planes.

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+// Requests of one map at the same time: a long one holds up no other, and all answer as they would alone.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <future>
+#include <thread>
+#include <vector>
+
+#include "mapping/small_campus.hpp"
+#include "serve/map_service.hpp"
+
+namespace cluxel::serve {
+namespace {
+
+const std::string kToken = "a token of 16 and more characters";
+const std::string kAsk = "/sparql?format=csv&query=ASK%20%7B%3Chttps%3A%2F%2Fe.org%2Fa%3E%20%3Fp%20%3Fo%7D";
+
+/// A page that takes as long as the test wants: it reads layers, tells so, and waits.
+struct SlowPage {
+  std::promise<void> begun, end;
+  std::shared_future<void> ended{end.get_future()};
+  std::atomic<int> made = 0;
+  bool is_same = false;  ///< whether the layers that it read first stayed as they were
+
+  std::string operator()(const mapping::MapReader& map) {
+    if (++made > 1) return "made again";
+    const mapping::TileStages& stages = map.stages();
+    const std::size_t tiles = stages.summaries().size(), with_points = stages.points().size();
+    const perception::Scene& scene = map.scene();
+    const std::size_t primitives = scene.primitives.size();
+    begun.set_value();
+    ended.wait();
+    is_same = &map.stages() == &stages && stages.summaries().size() == tiles && stages.points().size() == with_points &&
+              &map.scene() == &scene && scene.primitives.size() == primitives;
+    return "made";
+  }
+};
+
+class RequestsAtOnce : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder = new rdf::ScratchFolder;
+    const mapping::SmallCampus campus({.seed = 3, .stops = 2, .size_m = 50, .points_per_stop = 3000});
+    buildMap(mapping::scansOf(campus.files()), mapping::shippedInputs(), folder->path() / "map.clx", {.threads = 2},
+             mapping::silence());
+  }
+  static void TearDownTestSuite() { delete folder; }
+  void SetUp() override { std::filesystem::copy_file(folder->path() / "map.clx", file, kOver); }
+
+  std::unique_ptr<MapService> service(std::size_t running, SlowPage* page = nullptr) const {
+    ServiceOptions options;
+    options.load.running = running;
+    options.token = kToken;
+    if (page != nullptr)
+      options.page = [page](const mapping::MapReader& map, const std::string&) { return (*page)(map); };
+    return std::make_unique<MapService>(std::vector<MapArgument>{{"map", file}}, DataHome(test::sourceFolder()),
+                                        options);
+  }
+  static HttpResponse get(MapService& service, const std::string& target) {
+    HttpRequest request;
+    request.target = target;
+    return service.handle(request);
+  }
+  static HttpResponse insert(MapService& service, const std::string& object) {
+    return service.handle(
+        {.method = "POST",
+         .target = "/sparql",
+         .headers = {{"authorization", "Bearer " + kToken}, {"content-type", "application/sparql-update"}},
+         .body = "INSERT DATA { <https://e.org/a> rdfs:label \"" + object + "\" }"});
+  }
+  /// One of each kind of request that reads the layers of the map, and some that do not.
+  static std::vector<std::string> targets() {
+    std::vector<std::string> all{"/objects/%230/explanation", "/objects/%231/explanation?whyNot=Tree",
+                                 "/objects/%230/points",      "/tasks/count_by_class",
+                                 "/tasks/search?for=Tree",    "/tasks/route?from=0,0&to=3,2",
+                                 "/objects?class=Tree",       kAsk};
+    for (const char* place : {"-1/-1", "-1/0", "0/-1", "0/0"}) all.push_back(std::string("/tiles/") + place);
+    return all;
+  }
+
+  static constexpr auto kOver = std::filesystem::copy_options::overwrite_existing;
+  static inline rdf::ScratchFolder* folder = nullptr;
+  const std::filesystem::path file = folder->path() / "served.clx";
+};
+
+/// Whether `work` ends although another request does not. It ends that one if not, so that the test goes on.
+bool endsBeside(SlowPage& page, const std::function<void()>& work) {
+  std::future<void> done = std::async(std::launch::async, work);
+  const bool has_ended = done.wait_for(std::chrono::seconds(120)) == std::future_status::ready;
+  if (!has_ended) page.end.set_value();
+  done.get();
+  return has_ended;
+}
+
+TEST_F(RequestsAtOnce, ALongOneHoldsUpNoOtherOfItsMap) {
+  SlowPage page;
+  const auto served = service(2, &page);
+  auto slow = std::async(std::launch::async, [&] { return get(*served, "/page"); });
+  page.begun.get_future().wait();
+  for (const std::string& target : targets()) {
+    HttpResponse response;
+    ASSERT_TRUE(endsBeside(page, [&] { response = get(*served, target); })) << target;
+    EXPECT_EQ(response.status, 200) << target << ": " << response.body;
+  }
+  HttpResponse updated;
+  ASSERT_TRUE(endsBeside(page, [&] { updated = insert(*served, "one"); }));
+  EXPECT_EQ(updated.status, 200) << updated.body;
+  ASSERT_TRUE(endsBeside(page, [&] { served->tidy(); }));
+  EXPECT_EQ(get(*served, "/objects/%230/points").status, 200);
+  page.end.set_value();
+  EXPECT_EQ(slow.get().body, "made");
+  EXPECT_TRUE(page.is_same) << "what a request holds changes under it";
+  EXPECT_EQ(get(*served, "/page").body, "made again") << "the page of the commit before is not that of this one";
+}
+
+TEST_F(RequestsAtOnce, AllAnswerAsTheyWouldAlone) {
+  std::vector<std::string> alone;
+  const auto one = service(1);
+  for (const std::string& target : targets()) alone.push_back(get(*one, target).body);
+  constexpr std::size_t kThreads = 5;
+  for (int round = 0; round < 3; ++round) {
+    const auto many = service(kThreads);
+    std::vector<std::thread> threads;
+    std::atomic<int> different = 0;
+    for (std::size_t thread = 0; thread < kThreads; ++thread)
+      threads.emplace_back([&, thread] {
+        for (std::size_t i = 0; i < alone.size(); ++i) {
+          const std::size_t which = (i * 5 + thread * 3) % alone.size();
+          if (get(*many, targets()[which]).body != alone[which]) ++different;
+        }
+      });
+    for (std::thread& thread : threads) thread.join();
+    EXPECT_EQ(different, 0);
+  }
+}
+
+TEST_F(RequestsAtOnce, NoneAnswersFromBeforeAnUpdateThatWasReported) {
+  const auto served = service(4);
+  std::atomic<bool> is_over = false;
+  std::thread reader([&] {
+    while (!is_over) get(*served, "/tiles/0/0");
+  });
+  for (int i = 0; i < 5; ++i) {
+    const std::string label = "label " + std::to_string(i);
+    ASSERT_EQ(insert(*served, label).status, 200);
+    const HttpResponse rows = get(*served,
+                                  "/sparql?format=csv&query=SELECT%20%3Fo%20%7B%3Chttps%3A%2F%2Fe.org%2Fa%3E%20"
+                                  "%3Fp%20%3Fo%7D");
+    EXPECT_NE(rows.body.find(label), std::string::npos) << rows.body;
+    served->tidy();
+  }
+  is_over = true;
+  reader.join();
+}
+
+}  // namespace
+}  // namespace cluxel::serve
