@@ -27,12 +27,14 @@ class ReadOnce {
  public:
   template <typename Read>
   const Value& get(const Read& read) {
+    if (const Value* there = there_.load(std::memory_order_acquire)) return *there;
     const std::lock_guard lock(mutex_);
-    if (!value_) value_.emplace(read());
+    if (!value_) there_.store(&value_.emplace(read()), std::memory_order_release);
     return *value_;
   }
 
  private:
+  std::atomic<const Value*> there_ = nullptr;  ///< for callers that ask for each point: they take no lock
   std::mutex mutex_;
   std::optional<Value> value_;
 };

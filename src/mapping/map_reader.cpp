@@ -46,8 +46,7 @@ struct MapReader::Impl {
   }
 
   /// The program that built the map accepted this model. A fault now means that another version of Cluxel built the
-  /// map,
-  /// not that the user gave a faulty model.
+  /// map, not that the user gave a faulty model.
   perception::LabelModel storedModel() {
     const NamedText& stored = readInputs().model;
     try {

@@ -48,7 +48,8 @@ struct PointAnswers {
 };
 inline constexpr std::uint32_t kNoObjectOfPoint = 0xffffffffU;
 
-/// One snapshot of a map. Not thread-safe.
+/// One snapshot of a map. Not thread-safe. What it reads once is shared with the other readers of its commit in this
+/// process, which other threads may use, and lasts as long as one of them.
 class MapReader {
  public:
   /// Throws Error (StoreUnavailable) when the file is not a readable map.
