@@ -36,8 +36,7 @@ TEST_F(ServeCommand, ASignalIsHeardWhileATaskRunsAndASecondEndsIt) {
                     " --threads 1 serve --port 0 --quiet --deadline 600 --running 1 --queue 0 " +
                     path("map.clx").string(),
                 path("stop.log"));
-  std::vector<std::unique_ptr<Connection>>
-      askers;  // the first finds the service free, unless a look at it comes between
+  std::vector<std::unique_ptr<Connection>> askers;  // one of them finds the service free between two looks at it
   ASSERT_TRUE(comes([&] {
     askers.push_back(std::make_unique<Connection>(served.port()));
     askers.back()->send("GET /tasks/endless HTTP/1.1\r\nHost: localhost\r\n\r\n");
