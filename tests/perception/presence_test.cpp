@@ -125,6 +125,16 @@ TEST(Presence, OneWeakHitDoesNotOutweighWhatIsSeenThrough) {
   EXPECT_EQ(stateAfter(after, visibilityOf(before), {}), PresenceState::Absent);
 }
 
+TEST(Presence, OneWeakHitIsNothingWhereMoreIsSeenThroughSince) {
+  const Visibility thing = visibilityOf(std::vector<ScanVotes>{votes(0, 200, 0)});
+  const ScanVotes hit = votes(1, 1, 0), through = votes(2, 0, 20);
+  ASSERT_FALSE(showAbsence(std::vector<ScanVotes>{hit, through}, thing, {})) << "a tenth of it was seen through";
+  EXPECT_EQ(stateAfter({hit}, thing, {}), PresenceState::Present);
+  EXPECT_EQ(stateAfter({hit, through}, thing, {}), PresenceState::NotObserved);
+  EXPECT_EQ(stateAfter({through, hit}, thing, {}), PresenceState::Present) << "it may have come since";
+  EXPECT_EQ(stateAfter({votes(0, 3, 0), through}, thing, {}), PresenceState::Present) << "surely seen";
+}
+
 TEST(Presence, SeesACarLeaveAndArrive) {
   const std::vector<ScanVotes> left{votes(1, 50, 2), votes(2, 60, 0), votes(3, 0, 40), votes(4, 0, 50)};
   const auto gone = presenceOf(left, visibilityOf(left), {});

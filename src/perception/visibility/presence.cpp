@@ -154,7 +154,12 @@ StateAtEnd stateAtEnd(std::span<const ScanVotes> votes, std::span<const std::uin
   }
   // Weak evidence for the thing does not outweigh what shows that it is gone.
   if (showAbsence(votes, thing, params)) return told(PresenceState::Absent, votes);
-  return there ? present() : told(PresenceState::NotObserved, votes);
+  // Nor does it tell a state when scans since then outweigh it, and too few places are seen through to show the
+  // absence.
+  const auto isOutweighed = [&] {
+    return logOddsOfPresence(votes.subspan(there->begin), thing.share_of_hits, params) <= 0;
+  };
+  return there && !isOutweighed() ? present() : told(PresenceState::NotObserved, votes);
 }
 
 }  // namespace cluxel::perception

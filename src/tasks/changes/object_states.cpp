@@ -52,8 +52,10 @@ ObjectStates statesOf(std::uint32_t object, std::span<const perception::ScanVote
   const bool came = states.before == PresenceState::Absent && states.after == PresenceState::Present;
   if (left || came) {
     const auto without_it = left ? after : before, with_it = left ? before : after;
-    states.was_away = leftOnALaterVisit(without_it, visits, thing, kParams);
-    states.is_all_gone = showPresence(with_it, thing, kParams) && sawThroughAll(without_it, thing);
+    // A few hits call a thing present, but do not show that it came or was there.
+    const bool was_surely_there = showPresence(with_it, thing, kParams);
+    states.was_away = was_surely_there && leftOnALaterVisit(without_it, visits, thing, kParams);
+    states.is_all_gone = was_surely_there && sawThroughAll(without_it, thing);
   }
   states.visits = visitsWithIt(votesByVisit(votes, visits));
   return states;

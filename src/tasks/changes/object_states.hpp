@@ -18,10 +18,10 @@ struct ObjectStates {
                             after = perception::PresenceState::NotObserved;
   double log_odds_before = 0, log_odds_after = 0;  ///< of "there", from the scans that tell the states
   double coverage_before = 0, coverage_after = 0;  ///< share of its places that these scans hit or saw through
-  /// Present at the end of one time and absent at that of the other, though it was surely there on an earlier visit of
-  /// that other time. Scans of one visit that see through a thin thing do not tell that it left.
+  /// Surely present at the end of one time and absent at that of the other, though it was surely there on an earlier
+  /// visit of that other time. Scans of one visit that see through a thin thing do not tell that it left.
   bool was_away = false;
-  /// Present at the end of one time and absent at that of the other, which saw through nearly all of it and hit none.
+  /// Surely present at the end of one time and absent at that of the other, which saw through nearly all and hit none.
   bool is_all_gone = false;
   std::vector<std::uint32_t> visits{};               ///< on which it was surely there, ascending
   Eigen::AlignedBox3d box{};                         ///< of its cluxels [m, map]
