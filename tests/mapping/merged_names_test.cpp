@@ -12,6 +12,7 @@
 #include "mapping/change/member_places.hpp"
 #include "mapping/living_map.hpp"
 #include "rdf/map_iris.hpp"
+#include "rules/objects/finished_objects.hpp"
 
 namespace cluxel::mapping {
 namespace {
@@ -175,6 +176,27 @@ TEST(MergedNames, ALargeThingGoesOnInItsBodyNotInAScrap) {
   for (const std::string& name : {rdf::iriOfObject(whole.id), rdf::iriOfObject(of_other.id)}) {
     ASSERT_TRUE(lineage.find(name));
     EXPECT_EQ(lineage.find(name)->object, body.id);
+  }
+}
+
+/// The ground of one map covers what another took for a bush.
+TEST(MergedNames, OfWhatBecomesPartOfTheGroundEndForNothing) {
+  const auto ground = [](std::vector<std::uint64_t> seeds) {
+    return ObjectMembers{rules::idOfClassWide("Ground"), "Ground", std::move(seeds)};
+  };
+  LivingMap a, b;
+  const ObjectMembers bush = thingMembers("bush", {11, 12});
+  a.change({bush, ground({1, 2, 3})}, timeOf(10'001));
+  b.change({ground({4, 5})}, timeOf(10'002));
+  const std::vector<ObjectMembers> after{ground({1, 2, 3, 4, 5, 11, 12})};
+  for (const auto& maps : {std::vector<const LivingMap*>{&a, &b}, {&b, &a}}) {
+    const LivingMap result = merged(maps, after, timeOf(20'000));
+    expectSoundNames(result);
+    const QuadReader quads(result.environment->read());
+    EXPECT_TRUE(ThingLookup(quads).replacementsOf(rdf::iriOfThing(bush.id)).empty());
+    const Lineage lineage(quads, {after.front().id});
+    for (const std::string& name : {rdf::iriOfObject(bush.id), rdf::iriOfThing(bush.id)})
+      EXPECT_FALSE(lineage.find(name)) << "what is said of the bush would be said of the ground";
   }
 }
 

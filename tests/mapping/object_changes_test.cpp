@@ -8,6 +8,8 @@
 #include <numeric>
 #include <random>
 
+#include "rules/objects/finished_objects.hpp"
+
 namespace cluxel::mapping {
 
 namespace {
@@ -107,6 +109,17 @@ TEST(ObjectChanges, OfAMergeTellWhatHasJoinedAnObjectOfTheSameName) {
   ASSERT_EQ(changes.joined.size(), 1U);
   EXPECT_EQ(changes.joined.front().id, whole.id);
   EXPECT_EQ(changes.joined.front().from.size(), 2U) << "the piece was not mentioned";
+}
+
+TEST(ObjectChanges, OfAMergeWhatBecomesPartOfTheGroundIsGone) {
+  const ContentHash of_class = rules::idOfClassWide("Ground");
+  const ObjectMembers ground{of_class, "Ground", {1, 2, 3, 4}}, more_ground{of_class, "Ground", {1, 2, 3, 7}};
+  const ObjectMembers bush{idNamed("bush"), "Bush", {7}}, other_bush{idNamed("other bush"), "Bush", {4}};
+  const ObjectChanges changes = compareObjects({bush, ground}, {more_ground, other_bush});
+  EXPECT_EQ(changes.unchanged, 1U) << "the ground";
+  EXPECT_EQ(changes.gone, std::vector{bush.id});
+  EXPECT_EQ(changes.added, std::vector{other_bush.id}) << "it is no piece of the ground";
+  EXPECT_TRUE(changes.changed.empty() && changes.split.empty() && changes.joined.empty());
 }
 
 TEST(ObjectChanges, OfTwoStatesOfOneMapNeedOnlyWhatDiffers) {

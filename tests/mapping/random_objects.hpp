@@ -11,6 +11,7 @@
 #include "mapping/change/object_changes.hpp"
 #include "mapping/small_campus.hpp"
 #include "mapping/thing_history.hpp"
+#include "rules/objects/finished_objects.hpp"
 
 namespace cluxel::mapping {
 
@@ -32,7 +33,7 @@ class RandomObjects {
     for (const auto& [owner, own] : members) {
       ContentHasher hasher;
       for (const std::uint64_t member : own) hasher.add(member);
-      all.push_back({owner == 0 ? hashOf("ground") : hasher.finish(), "Tree", own});
+      all.push_back({owner == 0 ? rules::idOfClassWide("Tree") : hasher.finish(), "Tree", own});
     }
     std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
     return all;

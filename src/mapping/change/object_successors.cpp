@@ -3,7 +3,11 @@
 #include "mapping/change/object_successors.hpp"
 
 #include <algorithm>
+#include <map>
 #include <set>
+#include <string>
+
+#include "rules/objects/finished_objects.hpp"
 
 namespace cluxel::mapping {
 
@@ -11,12 +15,27 @@ namespace {
 
 using Shared = std::vector<std::vector<SharedMembers>>;
 
+/// Which objects take in all of their class, by which they are named.
+std::vector<char> areClassWide(const ObjectList& objects) {
+  std::vector<char> are_wide;
+  are_wide.reserve(objects.size());
+  std::map<std::string, ContentHash> id_of_class;
+  for (const ObjectMembers* object : objects) {
+    const auto [known, is_new] = id_of_class.try_emplace(object->class_iri);
+    if (is_new) known->second = rules::idOfClassWide(object->class_iri);
+    are_wide.push_back(object->id == known->second ? 1 : 0);
+  }
+  return are_wide;
+}
+
 class SuccessorSearch {
  public:
   SuccessorSearch(const ObjectList& before, ObjectsOf objects_of, const ObjectList& after)
       : before_(before),
         objects_of_(objects_of),
         after_(after),
+        is_wide_before_(areClassWide(before)),
+        is_wide_after_(areClassWide(after)),
         successors_(before.size()),
         has_predecessor_(after.size(), 0) {}
 
@@ -34,6 +53,11 @@ class SuccessorSearch {
     has_predecessor_[after] = 1;
   }
 
+  /// Of a class-wide object only the name counts: what became a part of the ground is not the ground.
+  bool mayShare(std::uint32_t before, std::uint32_t after) const {
+    return is_wide_before_[before] == 0 && is_wide_after_[after] == 0;
+  }
+
   bool isEnough(std::uint32_t before, std::uint32_t after, std::size_t count) const {
     return 2 * count >= std::min(before_[before]->seeds.size(), after_[after]->seeds.size());
   }
@@ -45,7 +69,7 @@ class SuccessorSearch {
     for (std::uint32_t b = 0; b < before_.size(); ++b) {
       std::map<std::uint32_t, std::size_t> shared;
       for (const std::uint64_t seed : before_[b]->seeds)
-        if (const std::uint32_t owner = owners.ownerOf(seed); owner != kNoOwner) ++shared[owner];
+        if (const std::uint32_t owner = owners.ownerOf(seed); owner != kNoOwner && mayShare(b, owner)) ++shared[owner];
       const auto same = named.find(before_[b]->id);
       if (same != named.end()) shared.try_emplace(same->second, 0);
       for (const auto& [a, count] : shared)
@@ -55,6 +79,7 @@ class SuccessorSearch {
 
   /// Whether seeds tell where most of an object is, or its name does.
   bool isSettled(std::uint32_t before) const {
+    if (is_wide_before_[before] != 0) return true;
     return std::any_of(successors_[before].begin(), successors_[before].end(), [&](const SharedMembers& successor) {
       return isMost(before, successor.count) || after_[successor.other]->id == before_[before]->id;
     });
@@ -76,6 +101,7 @@ class SuccessorSearch {
     const Shared shared = sharedBySeedOrPlace(before_, objects_of_, after_);
     for (std::uint32_t b = 0; b < before_.size(); ++b)
       for (const auto& [a, count, is_by_place] : shared[b]) {
+        if (!mayShare(b, a)) continue;
         const auto by_seeds = std::find_if(successors_[b].begin(), successors_[b].end(),
                                            [other = a](const SharedMembers& known) { return known.other == other; });
         if (by_seeds != successors_[b].end()) {
@@ -90,6 +116,7 @@ class SuccessorSearch {
   const ObjectList& before_;
   ObjectsOf objects_of_;
   const ObjectList& after_;
+  std::vector<char> is_wide_before_, is_wide_after_;
   Shared successors_;
   std::vector<char> has_predecessor_;
 };
