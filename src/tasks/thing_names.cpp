@@ -2,6 +2,7 @@
 // Names are looked up among the ids of objects and primitives; nothing else of the map is read.
 #include "tasks/thing_names.hpp"
 
+#include <algorithm>
 #include <charconv>
 
 #include "base/ascii.hpp"
@@ -9,6 +10,7 @@
 #include "mapping/change/map_things.hpp"
 #include "mapping/statements/overruled_objects.hpp"
 #include "mapping/thing_history.hpp"
+#include "mapping/things/ended_names.hpp"
 #include "rdf/map_iris.hpp"
 #include "rdf/ontology/ontology.hpp"
 #include "rules/language/rule_condition.hpp"
@@ -90,6 +92,9 @@ std::string classOfOther(const mapping::MapReader& map, const std::string& name)
     throw Error(ErrorKind::NotFound, "'" + name + "' is " + rules::withArticle(class_name) +
                                          ", neither an object nor a primitive: no rule for objects decided about it; "
                                          "a query tells its facts");
+  const std::vector<ContentHash>& objects = map.objectIds();
+  const auto isPresent = [&](const ContentHash& id) { return std::binary_search(objects.begin(), objects.end(), id); };
+  if (const auto ended = mapping::endOf(map.quads(), isPresent, name)) throw Error(ErrorKind::NotFound, textOf(*ended));
   throw Error(ErrorKind::NotFound, "nothing in the map is named '" + name + "'; the question objects.rq lists objects");
 }
 

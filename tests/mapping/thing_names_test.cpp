@@ -12,6 +12,7 @@
 #include "mapping/change/member_places.hpp"
 #include "mapping/random_objects.hpp"
 #include "mapping/small_campus.hpp"
+#include "mapping/things/ended_names.hpp"
 #include "rdf/map_iris.hpp"
 
 namespace cluxel::mapping {
@@ -33,6 +34,12 @@ class ThingNames : public testing::Test {
     std::vector<ContentHash> ids;
     for (const ObjectMembers& object : present) ids.push_back(object.id);
     return Lineage(QuadReader(environment->read()), ids).find(name);
+  }
+  std::optional<EndedName> ended(const std::string& name) const {
+    const auto isPresent = [&](const ContentHash& id) {
+      return std::any_of(present.begin(), present.end(), [&](const ObjectMembers& object) { return object.id == id; });
+    };
+    return endOf(QuadReader(environment->read()), isPresent, name);
   }
 
   ScratchFolder folder;
@@ -92,6 +99,39 @@ TEST_F(ThingNames, ComeBackWithTheSameObjectOnly) {
   change({thingMembers("here", {1, 2}), thingMembers("other", {9})});
   EXPECT_EQ(nameOfObject("here"), rdf::iriOfThing(hashOf("here")));
   EXPECT_EQ(found(hashOf("here").hex())->object, hashOf("here"));
+}
+
+TEST_F(ThingNames, OfWhatEndedTellWhenAndWhatItLedTo) {
+  change({thingMembers("young", {1, 2}), thingMembers("other", {9})});
+  change({thingMembers("grown", {1, 2, 3}), thingMembers("other", {9})});
+  EXPECT_FALSE(ended("object/" + hashOf("young").hex())) << "it is there under another name";
+  change({thingMembers("other", {9})});
+  for (const std::string& name : {rdf::iriOfObject(hashOf("young")), rdf::iriOfObject(hashOf("grown")),
+                                  rdf::iriOfThing(hashOf("young")), hashOf("young").hex().substr(0, 8)}) {
+    const auto end = ended(name);
+    ASSERT_TRUE(end) << name;
+    EXPECT_EQ(end->time, "2026-01-03T00:00:00.000000Z");
+    EXPECT_TRUE(end->later.empty());
+    EXPECT_FALSE(end->went_on);
+  }
+  EXPECT_EQ(textOf(*ended(rdf::iriOfObject(hashOf("young")))),
+            "object/" + hashOf("young").hex() +
+                " ended at 2026-01-03T00:00:00.000000Z, and nothing that there is continues it");
+  EXPECT_FALSE(ended(rdf::iriOfObject(hashOf("unknown"))));
+  EXPECT_FALSE(ended(rdf::iriOfObject(hashOf("other"))));
+}
+
+TEST_F(ThingNames, OfWhatBecameSeveralTellThem) {
+  change({thingMembers("whole", {1, 2, 3, 4, 5, 6})});
+  change({thingMembers("a", {1, 2, 3}), thingMembers("b", {4, 5}), thingMembers("c", {6})});
+  change({thingMembers("b", {4, 5}), thingMembers("c", {6})});
+  const auto end = ended(rdf::iriOfObject(hashOf("whole")));
+  ASSERT_TRUE(end);
+  std::vector<ContentHash> expected{hashOf("b"), hashOf("c")};
+  std::sort(expected.begin(), expected.end());
+  EXPECT_EQ(end->later, expected);
+  EXPECT_EQ(textOf(*end), "object/" + hashOf("whole").hex() + " went on as 2 objects: object/" + expected[0].hex() +
+                              ", object/" + expected[1].hex());
 }
 
 TEST_F(ThingNames, AreNeverGivenTwice) {

@@ -7,9 +7,9 @@
 #include <set>
 
 #include "cluxel/error.hpp"
-#include "mapping/change/map_things.hpp"
 #include "mapping/change/statement_change.hpp"
 #include "mapping/layers/stored_layers.hpp"
+#include "mapping/statements/known_objects.hpp"
 #include "mapping/statements/named_resources.hpp"
 #include "mapping/statements/refused_quad.hpp"
 #include "mapping/statements/stated_values.hpp"
@@ -18,24 +18,6 @@
 namespace cluxel::mapping {
 
 namespace {
-
-/// The present object that an IRI means.
-class KnownObjects {
- public:
-  explicit KnownObjects(const rdf::ReadTransaction& transaction)
-      : transaction_(transaction), lineage_(rdf::QuadReader(transaction), storedObjectIds(transaction)) {}
-
-  std::optional<ContentHash> find(const std::string& iri) const {
-    const std::optional<ContentHash> object = hashIn(iri, "object");
-    if (object && storedRecord(transaction_, *object)) return object;
-    const auto former = lineage_.find(iri);
-    return former ? std::optional(former->object) : std::nullopt;
-  }
-
- private:
-  const rdf::ReadTransaction& transaction_;
-  Lineage lineage_;
-};
 
 /// What a statement about such an object is anchored to.
 class StatedObjects {
@@ -55,6 +37,7 @@ class StatedObjects {
     if (record && record->is_class_wide) return Anchor{{}, record->class_iri};
     return Anchor{anchorOfStored(transaction_, stages_, *object), {}};
   }
+  std::optional<EndedName> endOf(const std::string& iri) const { return known_.endOf(iri); }
 
  private:
   const rdf::ReadTransaction& transaction_;
@@ -90,6 +73,31 @@ auto aboutSubject(const Quad& quad, const Check& check) {
   }
 }
 
+/// Names of no present object.
+struct UnknownNames {
+  std::set<std::string> never;             ///< the map did not have them
+  std::map<std::string, EndedName> ended;  ///< it had them
+
+  void add(const std::string& iri, std::optional<EndedName> end) {
+    if (end)
+      ended.emplace(iri, *std::move(end));
+    else
+      never.insert(iri);
+  }
+};
+
+void noteUnknown(const UnknownNames& unknown, ProgressSink& sink) {
+  const std::string outcome = ": what is stated of it changes no object, now or later, but queries find it";
+  const auto others = [](std::size_t names) { return names > 1 ? " and " + std::to_string(names - 1) + " more" : ""; };
+  if (const auto& never = unknown.never; !never.empty())
+    sink.note(*never.begin() + others(never.size()) + (never.size() > 1 ? " are" : " is") +
+              " no object that this map has or had" + outcome);
+  if (const auto& ended = unknown.ended; !ended.empty())
+    sink.note("<" + ended.begin()->first + ">" + others(ended.size()) +
+              (ended.size() > 1 ? " are objects" : " is an object") + " that this map had. " +
+              textOf(ended.begin()->second) + outcome);
+}
+
 }  // namespace
 
 void requireStatableOfUnknown(const Quad& quad, const rules::ClassCatalogue& classes) {
@@ -110,14 +118,14 @@ void anchorStatedObjects(rdf::WriteTransaction& transaction, const ParsedInputs&
   StatedObjects objects(transaction, parsed);
   rdf::QuadWriter writer(transaction);
   std::size_t anchored = 0;
-  std::set<std::string> unknown;
+  UnknownNames unknown;
   for (const rdf::QuadIds& ids : stated) {
     const Quad quad{reader.termOf(ids.s), reader.termOf(ids.p), reader.termOf(ids.o), reader.termOf(ids.g)};
     if (!namesObject(quad.subject)) continue;
     auto anchor = objects.anchorOfIri(quad.subject.text);
     if (!anchor) {
       requireStatableOfUnknown(quad, parsed.rules.catalogue);
-      unknown.insert(quad.subject.text);
+      unknown.add(quad.subject.text, objects.endOf(quad.subject.text));
       continue;
     }
     const Statement statement = aboutSubject(quad, [&] {
@@ -131,11 +139,7 @@ void anchorStatedObjects(rdf::WriteTransaction& transaction, const ParsedInputs&
   }
   writer.flush();
   noteNamesThatChange(now, stated, sink);
-  if (!unknown.empty())
-    sink.note(*unknown.begin() +
-              (unknown.size() > 1 ? " and " + std::to_string(unknown.size() - 1) + " more are" : " is") +
-              " no object that this map has or had: what is stated of it changes no object, now or later, but queries "
-              "find it");
+  noteUnknown(unknown, sink);
   if (anchored > 0)
     sink.note(std::to_string(anchored) + (anchored == 1 ? " statement about an object is anchored to its points"
                                                         : " statements about objects are anchored to their points"));

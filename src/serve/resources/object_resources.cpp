@@ -10,6 +10,7 @@
 #include "cluxel/error.hpp"
 #include "mapping/change/map_things.hpp"
 #include "mapping/map_reader.hpp"
+#include "mapping/things/ended_names.hpp"
 #include "serve/http/media_types.hpp"
 #include "serve/http/refusal.hpp"
 #include "serve/resources/answer_body.hpp"
@@ -37,14 +38,17 @@ std::optional<std::size_t> numberIn(const std::string& id, std::size_t objects) 
 }
 
 /// The object that goes on under the name of a thing or of a former object.
-const Object* laterObject(const ObjectTable& table, const rdf::QuadReader& quads, const std::string& id) {
+const Object& laterObject(const ObjectTable& table, const rdf::QuadReader& quads, const std::string& id) {
   std::vector<ContentHash> present;
   for (const Object& object : table.objects) present.push_back(ContentHash::fromHex(hashOf(object.iri)));
-  const auto former = mapping::Lineage(quads, present).find(id);
-  if (!former) return nullptr;
-  for (const Object& object : table.objects)
-    if (hashOf(object.iri) == former->object.hex()) return &object;
-  return nullptr;
+  if (const auto former = mapping::Lineage(quads, present).find(id))
+    for (const Object& object : table.objects)
+      if (hashOf(object.iri) == former->object.hex()) return object;
+  const auto isPresent = [&](const ContentHash& object) {
+    return std::find(present.begin(), present.end(), object) != present.end();
+  };
+  const auto ended = mapping::endOf(quads, isPresent, id);
+  throw Refusal(404, "the map has no object '" + id + "'" + (ended ? ": " + textOf(*ended) : ""));
 }
 
 const Object& objectNamed(const ObjectTable& table, const rdf::QuadReader& quads, const std::string& id) {
@@ -57,9 +61,7 @@ const Object& objectNamed(const ObjectTable& table, const rdf::QuadReader& quads
     if (found != nullptr) throw Refusal(404, "'" + id + "' names more than one object; write more digits");
     found = &object;
   }
-  if (found == nullptr) found = laterObject(table, quads, id);
-  if (found == nullptr) throw Refusal(404, "the map has no object '" + id + "'");
-  return *found;
+  return found != nullptr ? *found : laterObject(table, quads, id);
 }
 
 struct Box {
