@@ -248,24 +248,32 @@ void UpdateRun::perform(const ast::DataUpdate& data) {
   apply(reader, changes);
 }
 
+std::string remedyForLocked() {
+  return "what a build writes follows from scans, rules and ontology. To correct it, insert what holds instead (it "
+         "goes "
+         "to graph operator), or change rules or ontology and apply them. To delete operator statements alone, write "
+         "GRAPH <" +
+         std::string(rdf::vocabulary::kGraphOperator) +
+         "> { ... } in the data or the template, or WITH before it. What follows from an operator statement goes when "
+         "the statement is withdrawn";
+}
+
 void UpdateRun::checkRemovable(const rdf::QuadReader& reader, const std::vector<ChangedQuad>& removals) {
   if (options_.any_graph_writable || options_.query.default_graph == DefaultGraph::Unnamed) return;
   const auto locked = lockedTriples(reader, removals, options_.writable_graphs, guard_);
   if (!locked) return;
   const Quad& first = locked->first;
+  const std::string remedy = options_.remedy_for ? options_.remedy_for(first) : "";
   fail(std::to_string(locked->count) + " of the " + std::to_string(locked->of) +
            " triples to delete lie in graphs that an update may not write, such as " + toNTriples(first.subject) + ' ' +
            toNTriples(first.predicate) + ' ' + toNTriples(first.object) + " in <" + first.graph.text +
            ">; nothing was changed",
-       "what a build writes follows from scans, rules and ontology. To correct it, insert what holds instead (it goes "
-       "to graph operator), or change rules or ontology and apply them. To delete operator statements alone, write "
-       "GRAPH <" +
-           std::string(rdf::vocabulary::kGraphOperator) +
-           "> { ... } in the template or WITH before it. What follows from an operator statement goes when the "
-           "statement is withdrawn");
+       remedy.empty() ? remedyForLocked() : remedy);
 }
 
 void UpdateRun::apply(const rdf::QuadReader& reader, const Changes& changes) {
+  if (options_.on_removal)
+    for (const ChangedQuad& removal : changes.removed) options_.on_removal(removal.quad);
   const ChangeCounts counts = applyChanges(reader, writer_, changes, guard_);
   report_.inserted += counts.inserted;
   report_.deleted += counts.deleted;

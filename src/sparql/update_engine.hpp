@@ -22,6 +22,10 @@ struct UpdateOptions {
   bool any_graph_writable = false;  ///< then the unnamed graph is the default target
   /// Returns the triples for the IRI of a LOAD (graph terms are ignored); if absent, LOAD is refused.
   std::function<std::vector<Quad>(const std::string& iri)> load = {};
+  /// Is told of each quad that an operation removes from a graph, also of those that are not there.
+  std::function<void(const Quad&)> on_removal = {};
+  /// How to delete a triple of a graph that may not be written; empty where only the general advice holds.
+  std::function<std::string(const Quad& triple)> remedy_for = {};
 };
 
 struct UpdateReport {

@@ -4,6 +4,7 @@
 #include "mapping/change/map_update.hpp"
 
 #include <chrono>
+#include <optional>
 
 #include "base/file_bytes.hpp"
 #include "base/utc_time.hpp"
@@ -15,6 +16,7 @@
 #include "mapping/facts/map_history.hpp"
 #include "mapping/facts/semantic_layer.hpp"
 #include "mapping/map_state.hpp"
+#include "mapping/statements/deleted_statements.hpp"
 #include "mapping/statements/named_resources.hpp"
 #include "mapping/statements/refused_quad.hpp"
 #include "mapping/statements/stated_subjects.hpp"
@@ -122,7 +124,15 @@ MapUpdateReport updateMap(const std::filesystem::path& file, const std::string& 
                                                 "other graphs can only be written in a store that was not made by a "
                                                 "build");
   const std::set<rdf::QuadIds> before = is_map ? quadsThatNameResources(transaction) : std::set<rdf::QuadIds>();
-  static_cast<sparql::UpdateReport&>(report) = runUpdate(transaction, update, options);
+  std::optional<DeletedStatements> deleted;
+  sparql::UpdateOptions run_options = options;
+  if (is_map) {
+    deleted.emplace(transaction);
+    run_options.on_removal = [&deleted](const Quad& quad) { deleted->add(quad); };
+    run_options.remedy_for = [&deleted](const Quad& triple) { return deleted->remedyFor(triple); };
+  }
+  static_cast<sparql::UpdateReport&>(report) = runUpdate(transaction, update, run_options);
+  if (deleted) report.deleted += deleted->withdraw(transaction, notes);
   if (is_map && report.inserted + report.deleted > 0) {
     const rdf::FlushPoll poll(transaction, [&check] { check(0); });
     try {
