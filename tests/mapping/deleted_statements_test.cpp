@@ -135,6 +135,13 @@ TEST_F(DeletedQuads, OfObjectsThatTheMapHadTellTheirEnd) {
   EXPECT_THAT(notes.all,
               AllOf(HasSubstr("<" + gone + "> is an object that this map had. " + end),
                     HasSubstr("by `retract`, and nothing that there is continues it: what is stated of it")));
+  try {
+    update("INSERT DATA { <" + gone + "> a <" + rdf::vocabulary::clx("Person") + "> }");
+    FAIL() << "it is stated";
+  } catch (const Error& fault) {
+    EXPECT_THAT(fault.what(), AllOf(HasSubstr("no object that the map has now: " + end),
+                                    HasSubstr("cannot be stated before the map has the object again")));
+  }
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <utility>
 
 #include "cluxel/error.hpp"
 #include "mapping/change/statement_change.hpp"
@@ -73,6 +74,19 @@ auto aboutSubject(const Quad& quad, const Check& check) {
   }
 }
 
+/// Refuses what would contradict the map once it has the object: a property that the map computes, and a class of
+/// objects. `end`: of an object that the map had.
+void requireStatableOfUnknown(const Quad& quad, const std::optional<EndedName>& end,
+                              const rules::ClassCatalogue& classes) {
+  if (quad.predicate.text != rdf::vocabulary::rdf("type"))
+    return aboutSubject(quad, [&] { requireStatable(quad.predicate.text); });
+  if (quad.object.kind == TermKind::Iri && isClassOfObjects(quad.object.text, classes))
+    throw RefusedQuad(quad, "<" + quad.subject.text + "> is no object that the map " +
+                                (end ? "has now: " + textOf(*end) + ". Its" : "knows: its") + " class <" +
+                                quad.object.text + "> cannot be stated before the map has the object" +
+                                (end ? " again" : ""));
+}
+
 /// Names of no present object.
 struct UnknownNames {
   std::set<std::string> never;             ///< the map did not have them
@@ -100,14 +114,6 @@ void noteUnknown(const UnknownNames& unknown, ProgressSink& sink) {
 
 }  // namespace
 
-void requireStatableOfUnknown(const Quad& quad, const rules::ClassCatalogue& classes) {
-  if (quad.predicate.text != rdf::vocabulary::rdf("type"))
-    return aboutSubject(quad, [&] { requireStatable(quad.predicate.text); });
-  if (quad.object.kind == TermKind::Iri && isClassOfObjects(quad.object.text, classes))
-    throw RefusedQuad(quad, "<" + quad.subject.text + "> is no object that the map knows: its class <" +
-                                quad.object.text + "> cannot be stated before the map has the object");
-}
-
 void anchorStatedObjects(rdf::WriteTransaction& transaction, const ParsedInputs& parsed,
                          const std::set<rdf::QuadIds>& before, ProgressSink& sink) {
   const auto& now = static_cast<const rdf::ReadTransaction&>(transaction);
@@ -124,8 +130,9 @@ void anchorStatedObjects(rdf::WriteTransaction& transaction, const ParsedInputs&
     if (!namesObject(quad.subject)) continue;
     auto anchor = objects.anchorOfIri(quad.subject.text);
     if (!anchor) {
-      requireStatableOfUnknown(quad, parsed.rules.catalogue);
-      unknown.add(quad.subject.text, objects.endOf(quad.subject.text));
+      std::optional<EndedName> end = objects.endOf(quad.subject.text);
+      requireStatableOfUnknown(quad, end, parsed.rules.catalogue);
+      unknown.add(quad.subject.text, std::move(end));
       continue;
     }
     const Statement statement = aboutSubject(quad, [&] {

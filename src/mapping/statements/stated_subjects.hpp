@@ -10,16 +10,13 @@
 
 namespace cluxel::mapping {
 
-/// Throws RefusedQuad for a quad about an object that the map does not know, and which would contradict the map once it
-/// has the object: for a property that the map computes, and for a class of objects.
-void requireStatableOfUnknown(const Quad& quad, const rules::ClassCatalogue& classes);
-
 /// Replaces quads of graph `operator` whose subject is an object of the map, or a thing or former object that such an
 /// object continues: `object a CLASS` becomes a statement of class, any other property a stated fact. Quads about
-/// objects that the map never had stay as they are, and so do those that were there `before`
+/// objects that the map does not have stay as they are, and so do those that were there `before`
 /// (quadsThatNameResources()): what they mean follows from when they were stated, not from what the map has become.
 /// Notes how many there were, and names that change. Throws RefusedQuad for what requireStatable() and
-/// requireNoWholeClass() refuse, and as requireStatableOfUnknown().
+/// requireNoWholeClass() refuse, and for classes of objects that the map does not have, which would contradict it once
+/// it has them.
 void anchorStatedObjects(rdf::WriteTransaction& transaction, const ParsedInputs& parsed,
                          const std::set<rdf::QuadIds>& before, ProgressSink& sink);
 
