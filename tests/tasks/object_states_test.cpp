@@ -13,7 +13,7 @@ namespace {
 using perception::PresenceState;
 using perception::ScanVotes;
 
-constexpr double kDay_s = 86400;
+constexpr double kBetweenScans_s = 86400;  ///< each is a visit
 
 /// Votes of one scan a day; the numbers of hits, and of places seen through.
 struct Looks {
@@ -23,7 +23,7 @@ std::vector<ScanVotes> daily(const std::vector<Looks>& looks) {
   std::vector<ScanVotes> votes;
   for (const Looks& look : looks) {
     ScanVotes& scan = votes.emplace_back();
-    scan.time_s = kDay_s * static_cast<double>(votes.size());
+    scan.time_s = kBetweenScans_s * static_cast<double>(votes.size());
     for (std::size_t i = 0; i < look.hits; ++i) scan.hits.set(i);
     for (std::size_t i = look.hits; i < look.hits + look.through; ++i) scan.seen_through.set(i);
   }
