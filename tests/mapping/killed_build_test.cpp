@@ -99,6 +99,23 @@ TEST_F(EarlyCommitLeft, OfAFirstBuildIsNoMap) {
   EXPECT_TRUE(canonicalText(map()) == builtText(campus->files(), *inputs));
 }
 
+/// Where the tiles of such a map lie is stored before the first scan.
+TEST_F(EarlyCommitLeft, OfAFirstBuildWithAnOriginBetweenTilesIsNoMap) {
+  const fs::path manifest = folder.path() / "scans.yaml";
+  std::string text = "map_origin: [5, 0, 0]\nscans:\n";
+  for (const fs::path& file : campus->files()) text += "  - " + file.string() + "\n";
+  writeFile(manifest, text);
+  const auto build_all = [&](ProgressSink& sink) {
+    buildMap(scansOf({manifest}), *inputs, map(), {.stage_points = 1}, sink);
+  };
+  leave([&] { fs::remove(map()); }, build_all);
+  EXPECT_TRUE(hasBuildToDo(map()));
+  EXPECT_THROW(refuseUncommittedBuild(Environment::open(map(), OpenMode::ReadOnly)->read(), map()), Error);
+  build_all(silence());
+  EXPECT_FALSE(isLeft());
+  EXPECT_TRUE(canonicalText(map()) == builtText({manifest}, *inputs));
+}
+
 TEST_F(EarlyCommitLeft, GoesWithACompaction) {
   leaveByExtension();
   EXPECT_TRUE(canonicalText(map()) == builtText({file(0)}, *inputs));

@@ -101,6 +101,25 @@ TEST(RecursiveRules, ARingThroughTheClosureFallsWithItsOnlySupport) {
   EXPECT_EQ(facts.count("has"), 0U);
 }
 
+/// Nothing was derived that the rule reads, until a mark that others rest on is withdrawn and derived instead.
+TEST(RecursiveRules, WhatIsDerivedInsteadOfStatedIsReadOn) {
+  FewFacts facts({rule("mark.rq",
+                       "CONSTRUCT { ?b clx:is clx:Marked ; clx:has clx:Mark } WHERE { ?b clx:after ?a . ?a clx:is "
+                       "clx:Marked }")});
+  for (const auto& [later, earlier] : {std::pair("t1", "t0"), {"t2", "t1"}}) facts.add(later, "after", earlier);
+  for (const std::string thing : {"t0", "t1", "t2"}) facts.add(thing, "is", "Marked");
+  facts.inferAnew();
+  EXPECT_EQ(facts.count("has"), 2U);
+  facts.remove("t1", "is", "Marked");
+  ASSERT_TRUE(facts.inferChanges()) << "inferred anew";
+  EXPECT_EQ(facts.count("is"), 1U);
+  EXPECT_EQ(facts.count("has"), 2U);
+  facts.remove("t2", "is", "Marked");
+  ASSERT_TRUE(facts.inferChanges()) << "inferred anew";
+  EXPECT_EQ(facts.count("is"), 2U);
+  EXPECT_EQ(facts.count("has"), 2U);
+}
+
 TEST(RecursiveRules, ThatExcludeWhatTheyDeriveAreNamedAndInferredAnew) {
   ChangingStore store(1, {rule("reach.rq",
                                "CONSTRUCT { ?a clx:reaches ?c } WHERE { ?a clx:near ?c "

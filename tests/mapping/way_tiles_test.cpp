@@ -194,7 +194,7 @@ TEST(WayTiles, PartsOfRegionsAddUpToThoseOfAFlood) {
     RandomGround ground(seed);
     const EvenTiles even = randomTiles(ground, -2, 2);
     std::vector<double> areas;
-    for (const Region& region : waysOf(keysOf(even), sourceOf(even)).regions) areas.push_back(region.area_m2);
+    for (const Region& region : waysOf(keysOf(even), sourceOf(even), {}).regions) areas.push_back(region.area_m2);
     EXPECT_EQ(areas, floodedAreas(even));
     EXPECT_GT(areas.size(), 1U);
   }
@@ -260,7 +260,7 @@ TEST(WayTiles, OfAChangedMapAreThoseOfAMapMadeFromNothing) {
       StoredGround fresh;
       fresh.update(even, keysOf(even), 2);
       ASSERT_TRUE(map.bytes() == fresh.bytes()) << seed << " " << change;
-      expectSame(map.ways(), waysOf(keysOf(even), sourceOf(even)));
+      expectSame(map.ways(), waysOf(keysOf(even), sourceOf(even), {}));
       for (const TileKey& tile : updated)
         EXPECT_TRUE(std::any_of(changed.begin(), changed.end(), [&](const TileKey& key) {
           return std::abs(key.x - tile.x) <= 2 && std::abs(key.y - tile.y) <= 2;

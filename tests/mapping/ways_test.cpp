@@ -58,7 +58,7 @@ struct MadeGround {
   WayGraph ways() const {
     TileSet keys;
     for (const auto& [key, tile] : points) keys.insert(key);
-    return waysOf(keys, [&](const TileKey& key) { return evenGroundOf(ringIn(points, key), ringIn(ground, key)); });
+    return waysOf(keys, [&](const TileKey& key) { return evenGroundOf(ringIn(points, key), ringIn(ground, key)); }, {});
   }
 };
 

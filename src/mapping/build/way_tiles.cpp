@@ -154,9 +154,10 @@ WayGraph storedWays(const rdf::ReadTransaction& transaction) {
 }
 
 WayGraph measuredWays(const rdf::ReadTransaction& transaction) {
-  return waysOf(storedTiles(transaction), [&](const TileKey& key) {
+  const auto tileAt = [&](const TileKey& key) {
     return ofTile(key, perception::evenTileFromBytes(requiredBlock(transaction, tables::kEven, key)));
-  });
+  };
+  return waysOf(storedTiles(transaction), tileAt, storedGrid(transaction));
 }
 
 }  // namespace cluxel::mapping

@@ -59,7 +59,7 @@ class ChangeInference {
   bool touchesDerivations(const rdf::QuadDifference& change) const;
 
   // A rule sees the facts of stages before `end`: its own stage, or the next one when it reads what it derives.
-  bool replaceAffected(rdf::Stage stage, const RuleShape& shape, Outputs& outputs);
+  bool replaceAffected(rdf::Stage stage, const RuleShape& shape, Outputs& outputs, Facts& gone);
   bool takeAwaySuspects(rdf::Stage stage, const RuleShape& shape, Outputs& outputs, Suspects& suspects);
   bool deriveOn(rdf::Stage stage, const RuleShape& shape, Outputs& outputs, Suspects suspects, std::uint32_t& rounds);
   std::optional<Outputs> solutions(rdf::Stage end, const RuleShape& shape, const ReadTest& reads,

@@ -100,16 +100,19 @@ bool ChangeInference::followRule(Stage stage, const RuleShape& shape, Outputs& o
   if (shape.is_monotone && hasFedItself(stage, ReadTest(reader_, shape)))
     return takeAwaySuspects(stage, shape, outputs, suspects) &&
            deriveOn(stage, shape, outputs, std::move(suspects), rounds);
-  if (!replaceAffected(stage, shape, outputs)) return false;
+  if (!replaceAffected(stage, shape, outputs, suspects.gone)) return false;
   if (!feedsItself(stage, ReadTest(reader_, shape))) return true;
-  return shape.is_monotone && deriveOn(stage, shape, outputs, {}, rounds);
+  return shape.is_monotone && deriveOn(stage, shape, outputs, std::move(suspects), ++rounds);
 }
 
-/// Evaluates the rule once, from the facts of earlier stages.
-bool ChangeInference::replaceAffected(Stage stage, const RuleShape& shape, Outputs& outputs) {
+/// Evaluates the rule once, from the facts of earlier stages. `gone`: what it saw before the change and not any more;
+/// the rule itself may derive it now.
+bool ChangeInference::replaceAffected(Stage stage, const RuleShape& shape, Outputs& outputs, Facts& gone) {
   const ReadTest reads(reader_, shape);
   const std::vector<SeenChange> relevant = seenChanges(stage, reads);
   std::vector<Triple> touched;
+  for (const SeenChange& change : relevant)
+    if (!isSeen(stage, change)) gone.insert(change.fact);
   if (!relevant.empty()) {
     write();
     std::optional<std::vector<rdf::TermId>> keys;
@@ -175,7 +178,7 @@ bool ChangeInference::deriveOn(Stage stage, const RuleShape& shape, Outputs& out
   std::vector<Triple> touched(suspects.taken.begin(), suspects.taken.end());
   addOtherBases(stage, outputs, touched);
   setBases(stage, shape, std::move(touched), outputs);
-  for (bool is_first = true;; is_first = false) {
+  for (;;) {
     if (facts_.touchesSchema()) return false;
     const ReadTest reads(reader_, shape);  // a round may bring a term of the patterns into the store
     std::vector<SeenChange> come = seenChanges(endOf(stage), reads);
@@ -191,7 +194,7 @@ bool ChangeInference::deriveOn(Stage stage, const RuleShape& shape, Outputs& out
       keys.insert(more->begin(), more->end());
     }
     if (keys.empty()) return true;
-    if (!is_first && ++rounds >= kMaxRounds) return false;
+    if (++rounds >= kMaxRounds - 1) return false;
     const auto some = unlessMost(std::vector<rdf::TermId>(keys.begin(), keys.end()), outputs);
     setBases(stage, shape, replaceOutputs(outputs, some, *solutions(endOf(stage), shape, reads, some)), outputs);
     keys.clear();

@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <memory>
 #include <stdexcept>
+#include <vector>
+
+#include "mapping/inference/rule_limits.hpp"
 
 namespace cluxel::mapping {
 
@@ -35,6 +38,39 @@ void relax(ast::GroupPattern& group) {
     if (auto* either = std::get_if<ast::UnionPattern>(&element.value))
       for (ast::GroupPattern& branch : either->branches) relax(branch);
   }
+}
+
+bool mentions(const ast::GroupPattern& group, ast::VariableIndex variable);
+
+bool mentions(const ast::PatternElement& element, ast::VariableIndex variable) {
+  const auto is_it = [&](const ast::PatternTerm& end) { return end.isVariable() && end.variable() == variable; };
+  bool found = false;
+  if (const auto* block = std::get_if<ast::TriplesBlock>(&element.value))
+    for (const ast::TriplePattern& triple : block->triples)
+      found = found || is_it(triple.subject) || is_it(triple.object);
+  if (const auto* data = std::get_if<ast::InlineData>(&element.value))
+    found = std::find(data->variables.begin(), data->variables.end(), variable) != data->variables.end();
+  forEachGroup(element, [&](const ast::GroupPattern& inner) { found = found || mentions(inner, variable); });
+  return found;
+}
+
+bool mentions(const ast::GroupPattern& group, ast::VariableIndex variable) {
+  return std::any_of(group.elements.begin(), group.elements.end(),
+                     [&](const ast::PatternElement& element) { return mentions(element, variable); });
+}
+
+/// Leaves out the branches of a UNION without the variable, when nothing else has it: they go with each of its values.
+void keepBranchesOf(ast::GroupPattern& group, ast::VariableIndex variable) {
+  const auto has_it = [&](const ast::PatternElement& element) { return mentions(element, variable); };
+  const auto only = std::find_if(group.elements.begin(), group.elements.end(), has_it);
+  if (only == group.elements.end() || std::find_if(only + 1, group.elements.end(), has_it) != group.elements.end())
+    return;
+  auto* either = std::get_if<ast::UnionPattern>(&only->value);
+  if (either == nullptr) return;
+  std::erase_if(either->branches, [&](const ast::GroupPattern& branch) { return !mentions(branch, variable); });
+  if (either->branches.size() > 1) return;
+  const std::vector<ast::PatternElement> elements = std::move(either->branches.front().elements);
+  group.elements.insert(group.elements.erase(only), elements.begin(), elements.end());
 }
 
 /// The sub-select with the patterns, to be changed in place.
@@ -92,6 +128,7 @@ ast::Query keysOf(const RuleShape& shape, const ValuesOf& values) {
     query.select.where = std::move(body);
   }
   if (!shape.is_plain) relax(query.select.where);
+  keepBranchesOf(query.select.where, values.variable);
   project(query.select, shape.key);
   restrictTo(query.select.where, values);
   return query;

@@ -165,12 +165,12 @@ WayGraph mergedWays(std::span<const WayTile> tiles, const perception::TileGrid& 
   return graph;
 }
 
-WayGraph waysOf(const perception::TileSet& tiles, const EvenTileSource& tileAt) {
+WayGraph waysOf(const perception::TileSet& tiles, const EvenTileSource& tileAt, const perception::TileGrid& grid) {
   const auto surfaces = surfaceTilesOf(tiles, tiles, tileAt);
   const auto found = wayTilesOf(tiles, tiles, tileAt, [&](const TileKey& key) { return surfaces.at(key); });
   std::vector<WayTile> all;
   for (const auto& [key, tile] : found) all.push_back(tile);
-  return mergedWays(all);
+  return mergedWays(all, grid);
 }
 
 }  // namespace cluxel::mapping

@@ -60,9 +60,9 @@ inline constexpr double kKerbHigh_m = 0.25;  ///< what is higher is no kerb
 
 /// The ways of a map from what its tiles contribute, of all tiles in ascending order. Cost: some 10 microseconds a tile
 /// with ways. `grid`: in which the tiles lie.
-WayGraph mergedWays(std::span<const WayTile> tiles, const perception::TileGrid& grid = {});
+WayGraph mergedWays(std::span<const WayTile> tiles, const perception::TileGrid& grid);
 
 /// The same from even ground. Cost: about 1 ms a tile.
-WayGraph waysOf(const perception::TileSet& tiles, const EvenTileSource& tileAt);
+WayGraph waysOf(const perception::TileSet& tiles, const EvenTileSource& tileAt, const perception::TileGrid& grid);
 
 }  // namespace cluxel::mapping
