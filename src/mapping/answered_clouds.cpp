@@ -7,6 +7,7 @@
 #include <map>
 #include <string>
 #include <unordered_map>
+#include <utility>
 
 #include "base/free_memory.hpp"
 #include "base/sorting/temporary_bytes.hpp"
@@ -15,6 +16,7 @@
 #include "mapping/layers/stored_layers.hpp"
 #include "mapping/map_tables.hpp"
 #include "mapping/stored_grid.hpp"
+#include "mapping/tile_objects.hpp"
 #include "mapping/tile_regions.hpp"
 #include "perception/crf/labelling.hpp"
 
@@ -61,7 +63,7 @@ class RegionAnswers {
       AnsweringTile answering{{stages.points().at(tile), map.model().perception.thin},
                               &cluxels->second,
                               ofTile(tile, perception::labelTileFromBytes(labels)),
-                              objectsIn(map, tile),
+                              objectsInTile(map, tile),
                               first_cluxel.at(tile)};
       const std::size_t count = cluxels->second.size();
       if (answering.labels.label.size() != count || answering.object.size() != count) failUnfit();
@@ -88,22 +90,6 @@ class RegionAnswers {
 
  private:
   [[noreturn]] static void failUnfit() { refuseDamaged("a stored tile does not fit its points"); }
-
-  static std::vector<std::uint32_t> objectsIn(const MapReader& map, const TileKey& tile) {
-    const auto layer = storedLayer(map.transaction(), tile);
-    if (!layer) refuseIncompleteTile();
-    const std::vector<ContentHash>& ids = map.objectIds();
-    std::vector<std::uint32_t> object_of_share;
-    for (const TileLayer::Share& share : layer->shares) {
-      const auto at = std::lower_bound(ids.begin(), ids.end(), share.object);
-      if (at == ids.end() || *at != share.object) refuseDamaged("a tile names an object that is not there");
-      object_of_share.push_back(static_cast<std::uint32_t>(at - ids.begin()));
-    }
-    std::vector<std::uint32_t> objects;
-    for (const std::uint32_t share : layer->share_of_cluxel)
-      objects.push_back(share == kNoShare ? kNoObjectOfPoint : object_of_share.at(share));
-    return objects;
-  }
 
   perception::TileGrid grid_;
   std::map<TileKey, AnsweringTile> tiles_;
@@ -169,8 +155,8 @@ class AnswerPieces {
 
 class AnsweredClouds {
  public:
-  AnsweredClouds(const MapReader& map, std::size_t max_cluxels)
-      : map_(map), clouds_(map.clouds()), inputs_(map.inputs()), stages_(map.model(), inputs_.params) {
+  AnsweredClouds(const MapReader& map, std::vector<Cloud> clouds, std::size_t max_cluxels)
+      : map_(map), clouds_(std::move(clouds)), inputs_(map.inputs()), stages_(map.model(), inputs_.params) {
     std::vector<CountedTile> tiles;
     std::uint32_t first = 0;
     for (const TileKey& tile : storedTiles(map.transaction())) {
@@ -223,7 +209,12 @@ class AnsweredClouds {
 }  // namespace
 
 void forEachAnsweredCloud(const MapReader& map, const AnsweredVisit& visit, std::size_t max_cluxels) {
-  AnsweredClouds(map, max_cluxels).visitAll(visit);
+  forEachAnsweredCloud(map, map.clouds(), visit, max_cluxels);
+}
+
+void forEachAnsweredCloud(const MapReader& map, std::vector<Cloud> clouds, const AnsweredVisit& visit,
+                          std::size_t max_cluxels) {
+  AnsweredClouds(map, std::move(clouds), max_cluxels).visitAll(visit);
 }
 
 }  // namespace cluxel::mapping

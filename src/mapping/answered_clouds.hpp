@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <vector>
 
 #include "mapping/map_reader.hpp"
 
@@ -20,5 +21,8 @@ using AnsweredVisit = std::function<void(const Cloud&, const scan::ScanPoints&, 
 /// cloud is complete. Throws Error (StoreUnavailable) for a damaged map, and when there is no room for that file. Cost:
 /// about 0.3 us a point.
 void forEachAnsweredCloud(const MapReader& map, const AnsweredVisit& visit, std::size_t max_cluxels = kAnsweredCluxels);
+/// The same of these clouds of the map, in their order.
+void forEachAnsweredCloud(const MapReader& map, std::vector<Cloud> clouds, const AnsweredVisit& visit,
+                          std::size_t max_cluxels = kAnsweredCluxels);
 
 }  // namespace cluxel::mapping

@@ -85,6 +85,7 @@ class CommitLayers {
   ReadOnce<rdf::ClassNames> class_names;
   ReadOnce<std::vector<rules::SemanticObject>> objects;
   ReadOnce<std::vector<ContentHash>> object_ids, primitive_ids;
+  ReadOnce<std::vector<std::string>> object_classes;
   ReadOnce<std::vector<OverruledObject>> overruled;
   ReadOnce<CluxelNumbers> cluxel_numbers;
   ReadOnce<perception::Scene> scene;

@@ -188,6 +188,15 @@ PointAnchor MapReader::anchorOf(const ContentHash& object) const {
 const std::vector<rules::SemanticObject>& MapReader::objects() const {
   return impl_->readObjects();
 }
+const std::vector<std::string>& MapReader::objectClasses() const {
+  return impl_->layers->object_classes.get([&] {
+    std::vector<std::string> classes;
+    forEachRecord(impl_->transaction,
+                  [&](const ContentHash&, const ObjectRecord& record) { classes.push_back(record.class_iri); });
+    return classes;
+  });
+}
+
 std::string MapReader::classOf(std::uint32_t object) const {
   const std::optional<ObjectRecord> record = storedRecord(impl_->transaction, objectIds().at(object));
   return record ? record->class_iri : std::string();

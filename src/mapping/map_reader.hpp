@@ -85,6 +85,9 @@ class MapReader {
   PointAnchor anchorOf(const ContentHash& object) const;
   /// The objects, sorted by id; cluxel numbers refer to scene().
   const std::vector<rules::SemanticObject>& objects() const;
+  /// The IRIs of the classes of objects(), in their order, without what else is read for these. Cost: a microsecond an
+  /// object.
+  const std::vector<std::string>& objectClasses() const;
   /// The class of an object by its number in objects(), which need not be read for it.
   std::string classOf(std::uint32_t object) const;
   /// What the classes of the map's ontology and objects are called in lists and counts. Read by the first call.

@@ -41,9 +41,8 @@ std::optional<std::string> seenThrough(const rdf::QuadReader& quads, const std::
 std::vector<bool> goneAmong(const mapping::MapReader& map) {
   const ObservedTimes times(map.quads());
   std::vector<bool> is_gone;
-  is_gone.reserve(map.objects().size());
-  for (const rules::SemanticObject& object : map.objects())
-    is_gone.push_back(times.of(rdf::iriOfObject(object.id)).has_value());
+  is_gone.reserve(map.objectIds().size());
+  for (const ContentHash& object : map.objectIds()) is_gone.push_back(times.of(rdf::iriOfObject(object)).has_value());
   return is_gone;
 }
 

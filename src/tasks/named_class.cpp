@@ -158,9 +158,9 @@ void requireClassOfObjects(const rdf::OntologyView& ontology, const std::string&
 
 void requireClassOfObjects(const mapping::MapReader& map, const rdf::OntologyView& ontology,
                            const std::string& class_iri) {
-  const auto& objects = map.objects();
-  if (std::none_of(objects.begin(), objects.end(),
-                   [&](const auto& object) { return ontology.isA(object.class_iri, class_iri); }))
+  const std::vector<std::string>& classes = map.objectClasses();
+  if (std::none_of(classes.begin(), classes.end(),
+                   [&](const std::string& of_object) { return ontology.isA(of_object, class_iri); }))
     requireClassOfObjects(ontology, class_iri);
 }
 

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 
 #include "cluxel/error.hpp"
@@ -54,6 +55,21 @@ TEST_F(AnsweredCloudsTest, HaveTheAnswersOfTheWholeMapInItsOrderWhateverTheRegio
   }
   EXPECT_GT(with_object, 1000);
   EXPECT_GT(without, 1000);
+}
+
+TEST_F(AnsweredCloudsTest, ComeInTheOrderThatIsAskedFor) {
+  std::vector<Cloud> clouds = map->clouds();
+  std::reverse(clouds.begin(), clouds.end());
+  std::size_t next = 0;
+  forEachAnsweredCloud(
+      *map, clouds,
+      [&](const Cloud& cloud, const scan::ScanPoints&, const PointAnswers& answers) {
+        ASSERT_LT(next, clouds.size());
+        EXPECT_EQ(cloud.id, clouds[next++].id);
+        EXPECT_EQ(answers.object, map->answersFor(cloud).object);
+      },
+      1500);
+  EXPECT_EQ(next, clouds.size());
 }
 
 TEST_F(AnsweredCloudsTest, NeedTheFolderForTemporaryFilesOnlyForSeveralRegions) {

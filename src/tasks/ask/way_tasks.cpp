@@ -54,7 +54,7 @@ TaskCell finite(double value) {
 }
 
 std::string iriOfThing(const mapping::MapReader& map, std::uint32_t object) {
-  return rdf::iriOfObject(map.objects()[object].id);
+  return rdf::iriOfObject(map.objectIds()[object]);
 }
 
 std::string percentText(double share) {
@@ -92,7 +92,7 @@ TaskAnswer runReach(const TaskContext& context, const TaskValues& values) {
   for (const ReachedObject& reached : objectsWithin(terrain, walk_m, leftOut(map, request))) {
     const std::string iri = iriOfThing(map, reached.object);
     const Eigen::Vector2d at = placeNamed(map, iri);
-    answer.rows.push_back({{iri, map.classNames().nameOf(map.objects()[reached.object].class_iri), at.x(), at.y(),
+    answer.rows.push_back({{iri, map.classNames().nameOf(map.objectClasses()[reached.object]), at.x(), at.y(),
                             reached.walk_m, reached.walk_m / speed_m_s},
                            {TaskShape::Kind::Point, {at}}});
   }

@@ -28,9 +28,10 @@ std::vector<KnownObject> knownOf(const mapping::MapReader& map, const rdf::Ontol
                                  const std::string& class_iri, const Eigen::Vector2d& from,
                                  const std::vector<bool>& is_gone) {
   std::vector<KnownObject> known;
-  for (std::uint32_t i = 0; i < map.objects().size(); ++i)
-    if (!is_gone[i] && ontology.isA(map.objects()[i].class_iri, class_iri))
-      known.push_back({i, (placeNamed(map, map.objects()[i].id.hex()) - from).norm()});
+  const std::vector<std::string>& classes = map.objectClasses();
+  for (std::uint32_t i = 0; i < classes.size(); ++i)
+    if (!is_gone[i] && ontology.isA(classes[i], class_iri))
+      known.push_back({i, (placeNamed(map, map.objectIds()[i].hex()) - from).norm()});
   std::stable_sort(known.begin(), known.end(),
                    [](const auto& a, const auto& b) { return a.distance_m < b.distance_m; });
   return known;
@@ -139,7 +140,7 @@ SearchAnswer searchFor(const mapping::MapReader& map, const SearchRequest& reque
   const TerrainGrid terrain = terrainIn(map, request.ways);
   const PassableGrid grid = passableIn(map, terrain, request.ways);
   const std::vector<bool> is_left_out = leftOut(map, request.ways);
-  const std::vector<bool> is_gone = request.ways.with_gone ? std::vector<bool>(map.objects().size()) : goneAmong(map);
+  const std::vector<bool> is_gone = request.ways.with_gone ? std::vector<bool>(map.objectIds().size()) : goneAmong(map);
   SearchAnswer answer;
   answer.frame = grid.frame;
   answer.known = knownOf(map, ontology, class_iri, from, is_gone);
@@ -156,7 +157,7 @@ std::string searchJson(const mapping::MapReader& map, const SearchAnswer& answer
   nlohmann::ordered_json json{{"known", nlohmann::ordered_json::array()}, {"stops", nlohmann::ordered_json::array()}};
   for (const KnownObject& known : answer.known)
     json["known"].push_back(
-        {{"object", rdf::iriOfObject(map.objects()[known.object].id)}, {"distance", shown(known.distance_m)}});
+        {{"object", rdf::iriOfObject(map.objectIds()[known.object])}, {"distance", shown(known.distance_m)}});
   for (const SearchStop& stop : answer.stops) {
     const Eigen::Vector2d place = answer.frame.centreOf(stop.cell);
     json["stops"].push_back({{"at", {place.x(), place.y()}},

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mapping/facts/object_geometry.hpp"
+#include "mapping/tile_objects.hpp"
 
 namespace cluxel::tasks {
 
@@ -76,9 +76,8 @@ class SightRays {
 SightGrid sightOf(const mapping::MapReader& map, const TerrainGrid& terrain, const std::vector<bool>& is_left_out,
                   double eye_m) {
   std::vector<bool> is_high;
-  for (std::size_t i = 0; i < map.objects().size(); ++i)
-    is_high.push_back(!is_left_out[i] &&
-                      mapping::geometryOf(map.scene().cluxels, mapping::cluxelsOf(map.objects()[i])).top_m >= eye_m);
+  const std::vector<double> tops = mapping::topsOfObjects(map);
+  for (std::size_t i = 0; i < tops.size(); ++i) is_high.push_back(!is_left_out[i] && tops[i] >= eye_m);
   SightGrid sight{terrain.frame, std::vector<std::uint8_t>(terrain.frame.size(), 0)};
   for (std::uint32_t cell = 0; cell < terrain.frame.size(); ++cell)
     for (const std::uint32_t thing : terrain.thingsIn(cell))

@@ -73,7 +73,7 @@ std::vector<std::uint8_t> cellsWith(const mapping::MapReader& map, const Terrain
   std::vector<std::uint8_t> marked(terrain.frame.size(), 0);
   for (std::uint32_t cell = 0; cell < terrain.frame.size(); ++cell)
     for (const std::uint32_t thing : terrain.thingsIn(cell))
-      if (thing != kUnnamedThing && !is_left_out[thing] && ontology.isA(map.objects()[thing].class_iri, class_iri))
+      if (thing != kUnnamedThing && !is_left_out[thing] && ontology.isA(map.objectClasses()[thing], class_iri))
         marked[cell] = 1;
   // A place stands where its members stand.
   const std::string query = "PREFIX clx: <" + std::string(rdf::vocabulary::kClx) + "> SELECT ?x ?y ?thing { ?o a <" +
@@ -83,7 +83,7 @@ std::vector<std::uint8_t> cellsWith(const mapping::MapReader& map, const Terrain
   const sparql::ResultTable places = sparql::evaluateQuery(map.quads(), query).table;
   std::set<std::string> left_out;
   for (std::size_t i = 0; i < is_left_out.size(); ++i)
-    if (is_left_out[i]) left_out.insert(rdf::iriOfObject(map.objects()[i].id));
+    if (is_left_out[i]) left_out.insert(rdf::iriOfObject(map.objectIds()[i]));
   for (std::size_t row = 0; row < places.row_count; ++row) {
     const auto cell = terrain.frame.cellAt({numberIn(places, row, 0), numberIn(places, row, 1)});
     if (cell && !left_out.contains(places.at(row, 2)->text)) marked[*cell] = 1;

@@ -58,7 +58,7 @@ WayJson barrierJson(const mapping::MapReader& map, const Barrier& barrier) {
                {"at", {rounded3(barrier.at.x()), rounded3(barrier.at.y())}},
                {"length", rounded3(barrier.length_m)}};
   if (barrier.measured > 0) json["measured"] = rounded3(barrier.measured);
-  if (barrier.thing != kUnnamedThing) json["object"] = rdf::iriOfObject(map.objects()[barrier.thing].id);
+  if (barrier.thing != kUnnamedThing) json["object"] = rdf::iriOfObject(map.objectIds()[barrier.thing]);
   return json;
 }
 
@@ -141,9 +141,8 @@ std::string reachJson(const mapping::MapReader& map, const std::vector<ReachedOb
                       double speed_m_s) {
   WayJson json{{"area", rounded3(area_m2)}, {"objects", WayJson::array()}};
   for (const ReachedObject& entry : reached) {
-    const rules::SemanticObject& object = map.objects()[entry.object];
-    json["objects"].push_back({{"object", rdf::iriOfObject(object.id)},
-                               {"class", map.classNames().nameOf(object.class_iri)},
+    json["objects"].push_back({{"object", rdf::iriOfObject(map.objectIds()[entry.object])},
+                               {"class", map.classNames().nameOf(map.objectClasses()[entry.object])},
                                {"walk", rounded3(entry.walk_m)},
                                {"seconds", rounded3(entry.walk_m / speed_m_s)}});
   }

@@ -27,8 +27,9 @@ class ObjectSelector {
   void mark(const std::string& name, std::vector<bool>& marked) const {
     const std::optional<rdf::Mobility> mobility = mobilityNamed(ontology_, name);
     const std::string iri = mobility ? std::string() : classNamed(map_, ontology_, name);
-    for (std::size_t i = 0; i < map_.objects().size(); ++i) {
-      const std::string& class_iri = map_.objects()[i].class_iri;
+    const std::vector<std::string>& classes = map_.objectClasses();
+    for (std::size_t i = 0; i < classes.size(); ++i) {
+      const std::string& class_iri = classes[i];
       const rdf::OntologyClass* known = ontology_.find(class_iri);
       const bool is_meant = mobility ? known != nullptr && known->mobility == mobility : ontology_.isA(class_iri, iri);
       if (is_meant) marked[i] = true;
@@ -40,7 +41,7 @@ class ObjectSelector {
                                   const std::vector<bool>& is_left_out) const {
     std::vector<std::uint8_t> cells(terrain.frame.size(), 0);
     if (mobilityNamed(ontology_, name)) {
-      std::vector<bool> marked(map_.objects().size(), false);
+      std::vector<bool> marked(map_.objectIds().size(), false);
       mark(name, marked);
       for (std::uint32_t cell = 0; cell < cells.size(); ++cell)
         for (const std::uint32_t thing : terrain.thingsIn(cell))
@@ -78,7 +79,7 @@ Eigen::Vector2d centroidOf(const mapping::MapReader& map, const std::string& iri
 }  // namespace
 
 std::vector<bool> leftOut(const mapping::MapReader& map, const WayRequest& request) {
-  std::vector<bool> is_left_out(map.objects().size(), false);
+  std::vector<bool> is_left_out(map.objectIds().size(), false);
   if (!request.with_gone) is_left_out = goneAmong(map);
   if (request.without.empty()) return is_left_out;
   const ObjectSelector selector(map);
@@ -118,8 +119,8 @@ Eigen::Vector2d placeNamed(const mapping::MapReader& map, const std::string& tex
       path.empty() || path == "object/" || path == "map:object/" || path == rdf::mapIri("object", "");
   const std::string digits = is_of_object ? name.substr(path.size()) : std::string();
   std::vector<std::string> found;
-  for (std::size_t i = 0; i < map.objects().size(); ++i) {
-    const ContentHash& id = map.objects()[i].id;
+  for (std::size_t i = 0; i < map.objectIds().size(); ++i) {
+    const ContentHash& id = map.objectIds()[i];
     if (text == "#" + std::to_string(i) || (digits.size() >= min_digits && id.hex().starts_with(digits)))
       found.push_back(rdf::iriOfObject(id));
   }
