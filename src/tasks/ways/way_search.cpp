@@ -1,56 +1,33 @@
 // SPDX-License-Identifier: Apache-2.0
-// The usable cells as a graph of Boost, and Dijkstra's algorithm on it.
+// Dijkstra's algorithm on the usable cells, with a heap of Boost.
 #include "tasks/ways/way_search.hpp"
 
 #include <algorithm>
-#include <array>
-#include <boost/graph/compressed_sparse_row_graph.hpp>
-#include <boost/graph/dijkstra_shortest_paths.hpp>
+#include <boost/graph/detail/d_ary_heap.hpp>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <numeric>
+#include <utility>
 
 namespace cluxel::tasks {
 
 namespace {
 
-struct Weight {
-  double cost = 0;
-};
-using WayGraph = boost::compressed_sparse_row_graph<boost::directedS, boost::no_property, Weight, boost::no_property,
-                                                    std::uint32_t, std::uint32_t>;
+/// What a cell is to a search.
+enum class Visited : std::uint8_t { No, Waiting, Done };
 
-constexpr std::uint32_t kNoVertex = 0xffffffffU;
-
-/// Vertices are the cells that may be used.
-class GraphOfCells {
+/// Steps between cells that may be used. They are told when they are asked for: a graph of them takes 200 bytes a cell.
+class CellSteps {
  public:
-  GraphOfCells(const PassableGrid& grid, const SearchRules& rules) : grid_(grid), rules_(rules) {
-    vertex_of_.assign(grid.frame.size(), kNoVertex);
-    for (std::uint32_t cell = 0; cell < grid.frame.size(); ++cell)
-      if (mayUse(cell)) {
-        vertex_of_[cell] = static_cast<std::uint32_t>(cell_of_.size());
-        cell_of_.push_back(cell);
-      }
-  }
+  CellSteps(const PassableGrid& grid, const SearchRules& rules) : grid_(grid), rules_(rules) {}
 
-  WayGraph graph() const {
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
-    std::vector<Weight> weights;
-    for (std::uint32_t vertex = 0; vertex < cell_of_.size(); ++vertex) addEdges(vertex, edges, weights);
-    return {boost::edges_are_sorted, edges.begin(), edges.end(), weights.begin(),
-            static_cast<std::uint32_t>(cell_of_.size())};
-  }
-  std::uint32_t vertexOf(std::uint32_t cell) const { return vertex_of_[cell]; }
-  const std::vector<std::uint32_t>& cells() const { return cell_of_; }
-
- private:
-  bool isOpen(std::uint32_t cell) const { return grid_.closure[cell] == Closure::Open; }
   bool mayUse(std::uint32_t cell) const { return isOpen(cell) || rules_.closed_cost; }
 
-  template <typename Edges>
-  void addEdges(std::uint32_t vertex, Edges& edges, std::vector<Weight>& weights) const {
+  /// Calls `visit(to, cost)` for each neighbour that may be entered, row by row.
+  template <typename Visit>
+  void forEachFrom(std::uint32_t from, const Visit& visit) const {
     const GridFrame& frame = grid_.frame;
-    const std::uint32_t from = cell_of_[vertex];
     const int x = frame.columnOf(from), y = frame.rowOf(from);
     for (int dy = -1; dy <= 1; ++dy)
       for (int dx = -1; dx <= 1; ++dx) {
@@ -61,10 +38,12 @@ class GraphOfCells {
         if (!mayUse(to) || (is_diagonal && !(isOpen(frame.index(x + dx, y)) && isOpen(frame.index(x, y + dy)))))
           continue;
         if (!grid_.isStepOpen(from, to) && !rules_.closed_cost) continue;
-        edges.emplace_back(vertex, vertex_of_[to]);
-        weights.push_back({costOf(from, to, is_diagonal)});
+        visit(to, costOf(from, to, is_diagonal));
       }
   }
+
+ private:
+  bool isOpen(std::uint32_t cell) const { return grid_.closure[cell] == Closure::Open; }
 
   double costOf(std::uint32_t from, std::uint32_t to, bool is_diagonal) const {
     const double length_m = grid_.frame.cell_m * (is_diagonal ? std::sqrt(2.0) : 1.0);
@@ -76,48 +55,59 @@ class GraphOfCells {
 
   const PassableGrid& grid_;
   const SearchRules& rules_;
-  std::vector<std::uint32_t> vertex_of_, cell_of_;
 };
 
-/// Ends the search when the goal's cost is known.
-struct GoalReached {};
-struct StopAtGoal : boost::default_dijkstra_visitor {
-  explicit StopAtGoal(std::uint32_t goal_cell) : goal(goal_cell) {}
-  void examine_vertex(std::uint32_t vertex, const WayGraph&) const {
-    if (vertex == goal) throw GoalReached();
+/// Dijkstra's algorithm. Equal costs keep the way that was found first.
+class Search {
+ public:
+  Search(const PassableGrid& grid, const SearchRules& rules)
+      : steps_(grid, rules),
+        ways_{std::vector<double>(grid.frame.size(), kInfinite), std::vector<std::uint32_t>(grid.frame.size())},
+        visited_(grid.frame.size(), Visited::No),
+        place_in_queue_(grid.frame.size(), 0),
+        queue_(ways_.cost.data(), place_in_queue_.data()) {
+    std::iota(ways_.before.begin(), ways_.before.end(), 0U);
   }
-  std::uint32_t goal;
+
+  CheapestWays from(std::uint32_t start, const std::optional<std::uint32_t>& goal) {
+    if (!steps_.mayUse(start)) return std::move(ways_);
+    ways_.cost[start] = 0;
+    visited_[start] = Visited::Waiting;
+    queue_.push(start);
+    while (!queue_.empty()) {
+      const std::uint32_t cell = queue_.top();
+      queue_.pop();
+      if (cell == goal) break;
+      const double cost = ways_.cost[cell];
+      steps_.forEachFrom(cell, [&](std::uint32_t to, double more) { reach(to, cell, cost + more); });
+      visited_[cell] = Visited::Done;
+    }
+    return std::move(ways_);
+  }
+
+ private:
+  static constexpr double kInfinite = std::numeric_limits<double>::infinity();
+  static constexpr std::size_t kChildren = 4;
+
+  void reach(std::uint32_t cell, std::uint32_t before, double cost) {
+    if (visited_[cell] == Visited::Done || !(cost < ways_.cost[cell])) return;
+    ways_.cost[cell] = cost;
+    ways_.before[cell] = before;
+    const bool is_new = std::exchange(visited_[cell], Visited::Waiting) == Visited::No;
+    is_new ? queue_.push(cell) : queue_.update(cell);
+  }
+
+  CellSteps steps_;
+  CheapestWays ways_;
+  std::vector<Visited> visited_;
+  std::vector<std::uint32_t> place_in_queue_;
+  boost::d_ary_heap_indirect<std::uint32_t, kChildren, std::uint32_t*, double*, std::less<double>> queue_;
 };
 
 }  // namespace
 
 CheapestWays cheapestWays(const PassableGrid& grid, std::uint32_t start, const SearchRules& rules) {
-  constexpr double infinite = std::numeric_limits<double>::infinity();
-  const GraphOfCells cells(grid, rules);
-  CheapestWays ways{std::vector<double>(grid.frame.size(), infinite), std::vector<std::uint32_t>(grid.frame.size())};
-  for (std::uint32_t cell = 0; cell < ways.before.size(); ++cell) ways.before[cell] = cell;
-  const std::uint32_t first = cells.vertexOf(start);
-  if (first == kNoVertex) return ways;
-  const WayGraph graph = cells.graph();
-  const std::size_t count = cells.cells().size();
-  std::vector<double> cost(count, infinite);
-  std::vector<std::uint32_t> before(count);
-  const auto index = boost::get(boost::vertex_index, graph);
-  try {
-    boost::dijkstra_shortest_paths(graph, first,
-                                   boost::weight_map(boost::get(&Weight::cost, graph))
-                                       .distance_map(boost::make_iterator_property_map(cost.begin(), index))
-                                       .predecessor_map(boost::make_iterator_property_map(before.begin(), index))
-                                       .visitor(StopAtGoal(rules.goal ? cells.vertexOf(*rules.goal) : kNoVertex)));
-  } catch (const GoalReached&) {  // the search has what it needs
-  }
-  for (std::uint32_t vertex = 0; vertex < count; ++vertex) {
-    // Boost's infinity is the largest number.
-    if (cost[vertex] >= std::numeric_limits<double>::max()) continue;
-    ways.cost[cells.cells()[vertex]] = cost[vertex];
-    ways.before[cells.cells()[vertex]] = cells.cells()[before[vertex]];
-  }
-  return ways;
+  return Search(grid, rules).from(start, rules.goal);
 }
 
 std::vector<std::uint32_t> wayTo(const CheapestWays& ways, std::uint32_t goal) {
