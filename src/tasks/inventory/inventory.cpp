@@ -12,6 +12,7 @@
 
 #include "base/convex_hull.hpp"
 #include "mapping/facts/object_geometry.hpp"
+#include "mapping/whole_objects.hpp"
 #include "rdf/map_iris.hpp"
 #include "rdf/vocabulary.hpp"
 #include "sparql/query_engine.hpp"
@@ -120,29 +121,39 @@ InventoryItem rowOf(std::vector<ParkedVehicle> vehicles) {
   return row;
 }
 
+/// Those that the map holds and that are not gone.
+std::map<std::string, ParkedVehicle> parkedNamed(const mapping::MapReader& map, const std::set<std::string>& names) {
+  const std::vector<bool> is_gone = goneAmong(map);
+  std::vector<bool> is_wanted;
+  for (std::size_t i = 0; i < is_gone.size(); ++i)
+    is_wanted.push_back(!is_gone[i] && names.contains(rdf::iriOfObject(map.objectIds()[i])));
+  std::map<std::string, ParkedVehicle> parked;
+  mapping::forEachWholeObject(map, is_wanted, [&](const mapping::WholeObject& whole) {
+    const auto box = mapping::geometryOf(whole.cluxels, mapping::cluxelsOf(whole.object)).box;
+    parked[rdf::iriOfObject(whole.object.id)] = {box.center.head<2>(), box.yaw_rad, box.size.x(), box.size.y()};
+  });
+  return parked;
+}
+
 /// The rows that the map's rules derived, and what stands in them.
 Inventory parkingRows(const mapping::MapReader& map) {
-  std::map<std::string, const rules::SemanticObject*> object_named;
-  const std::vector<bool> is_gone = goneAmong(map);
-  for (std::size_t i = 0; i < is_gone.size(); ++i)
-    if (!is_gone[i]) object_named[rdf::iriOfObject(map.objects()[i].id)] = &map.objects()[i];
   const sparql::ResultTable members =
       sparql::evaluateQuery(map.quads(),
                             "PREFIX clx: <" + std::string(rdf::vocabulary::kClx) +
                                 "> SELECT ?row ?vehicle { ?row a clx:ParkingRow ; clx:hasMember ?vehicle } "
                                 "ORDER BY ?row ?vehicle")
           .table;
+  std::set<std::string> names;
+  for (std::size_t i = 0; i < members.row_count; ++i) names.insert(members.at(i, 1)->text);
+  const std::map<std::string, ParkedVehicle> known = parkedNamed(map, names);
   std::map<std::string, std::vector<ParkedVehicle>> rows;
   std::set<std::string> lost_some;
   for (std::size_t i = 0; i < members.row_count; ++i) {
-    const auto known = object_named.find(members.at(i, 1)->text);
     std::vector<ParkedVehicle>& row = rows[members.at(i, 0)->text];
-    if (known == object_named.end()) {
+    if (const auto vehicle = known.find(members.at(i, 1)->text); vehicle != known.end())
+      row.push_back(vehicle->second);
+    else
       lost_some.insert(members.at(i, 0)->text);
-      continue;
-    }
-    const auto box = mapping::geometryOf(map.scene().cluxels, mapping::cluxelsOf(*known->second)).box;
-    row.push_back({box.center.head<2>(), box.yaw_rad, box.size.x(), box.size.y()});
   }
   Inventory found;
   for (auto& [iri, vehicles] : rows) {
@@ -184,6 +195,18 @@ std::vector<InventoryItem> sidewalksOf(const mapping::MapReader& map) {
   return found;
 }
 
+InventoryItem measuredItem(const mapping::MapReader& map, const mapping::WholeObject& whole) {
+  const auto& [number, object, cluxels] = whole;
+  InventoryItem item;
+  item.kind = map.classNames().nameOf(object.class_iri);
+  item.class_iri = object.class_iri;
+  item.object = rdf::iriOfObject(object.id);
+  item.height_m = mapping::geometryOf(cluxels, mapping::cluxelsOf(object)).top_m;
+  item.at = mapping::geometryOf(cluxels, partCluxels(object, rdf::vocabulary::clx("TreeTrunk"))).centroid.head<2>();
+  if (item.kind == "Tree") item.crown_m = crownDiameter(object, cluxels);
+  return item;
+}
+
 }  // namespace
 
 InventoryParams inventoryOfKinds(const mapping::MapReader& map, const std::vector<std::string>& kinds) {
@@ -206,16 +229,13 @@ InventoryParams inventoryOfKinds(const mapping::MapReader& map, const std::vecto
   return params;
 }
 
-InventoryItem measuredItem(const mapping::MapReader& map, const rules::SemanticObject& object) {
-  const perception::SceneCluxels& cluxels = map.scene().cluxels;
-  InventoryItem item;
-  item.kind = map.classNames().nameOf(object.class_iri);
-  item.class_iri = object.class_iri;
-  item.object = rdf::iriOfObject(object.id);
-  item.height_m = mapping::geometryOf(cluxels, mapping::cluxelsOf(object)).top_m;
-  item.at = mapping::geometryOf(cluxels, partCluxels(object, rdf::vocabulary::clx("TreeTrunk"))).centroid.head<2>();
-  if (item.kind == "Tree") item.crown_m = crownDiameter(object, cluxels);
-  return item;
+std::map<std::uint32_t, InventoryItem> measuredItems(const mapping::MapReader& map,
+                                                     const std::vector<bool>& is_wanted) {
+  std::map<std::uint32_t, InventoryItem> items;
+  mapping::forEachWholeObject(map, is_wanted, [&](const mapping::WholeObject& whole) {
+    items.emplace(whole.number, measuredItem(map, whole));
+  });
+  return items;
 }
 
 Inventory inventoryOf(const mapping::MapReader& map, const InventoryParams& params,
@@ -224,13 +244,14 @@ Inventory inventoryOf(const mapping::MapReader& map, const InventoryParams& para
   std::vector<std::string> wanted;
   for (const std::string& name : params.classes) wanted.push_back(classNamed(map, ontology, name));
   const std::vector<bool> is_gone = goneAmong(map);
+  const std::vector<std::string>& classes = map.objectClasses();
+  std::vector<bool> is_wanted;
+  for (std::size_t i = 0; i < is_gone.size(); ++i)
+    is_wanted.push_back(!is_gone[i] && std::any_of(wanted.begin(), wanted.end(), [&](const std::string& iri) {
+      return ontology.isA(classes[i], iri);
+    }));
   std::vector<InventoryItem> items;
-  for (std::size_t i = 0; i < is_gone.size(); ++i) {
-    const rules::SemanticObject& object = map.objects()[i];
-    const bool is_wanted = std::any_of(wanted.begin(), wanted.end(),
-                                       [&](const std::string& iri) { return ontology.isA(object.class_iri, iri); });
-    if (is_wanted && !is_gone[i]) items.push_back(measuredItem(map, object));
-  }
+  for (auto& [number, item] : measuredItems(map, is_wanted)) items.push_back(std::move(item));
   std::stable_sort(items.begin(), items.end(), [](const auto& a, const auto& b) { return a.kind < b.kind; });
   Inventory rows;
   if (params.with_rows) rows = parkingRows(map);

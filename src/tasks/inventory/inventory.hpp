@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -47,8 +48,9 @@ struct InventoryParams {
 /// requireClassOfObjects().
 InventoryParams inventoryOfKinds(const mapping::MapReader& map, const std::vector<std::string>& kinds);
 
-/// One object, without its street.
-InventoryItem measuredItem(const mapping::MapReader& map, const rules::SemanticObject& object);
+/// The objects that are marked, without their streets, by their numbers in MapReader::objects(). Memory and cost as for
+/// forEachWholeObject().
+std::map<std::uint32_t, InventoryItem> measuredItems(const mapping::MapReader& map, const std::vector<bool>& is_wanted);
 /// A parking row that lost vehicles is one as long as so many are left, whatever number the map's rule asks for: a rule
 /// does not tell that number.
 inline constexpr std::size_t kFewestInBrokenRow = 3;
