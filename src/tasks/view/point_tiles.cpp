@@ -14,6 +14,7 @@
 #include "base/content_hash.hpp"
 #include "base/mixed_bits.hpp"
 #include "base/packing/zstd_packing.hpp"
+#include "mapping/answered_clouds.hpp"
 
 namespace cluxel::tasks {
 
@@ -46,18 +47,19 @@ std::uint8_t heightByte(double height_m) {
 /// Reads one cloud into the tiles.
 class CloudReader {
  public:
-  CloudReader(const mapping::MapReader& map, double kept_share, ViewTileMap& tiles)
-      : map_(map), kept_(static_cast<std::uint64_t>(kept_share * kAll)), tiles_(tiles) {}
+  CloudReader(const std::vector<mapping::CluxelHeight>& heights, double kept_share, ViewTileMap& tiles)
+      : heights_(heights), kept_(static_cast<std::uint64_t>(kept_share * kAll)), tiles_(tiles) {}
 
-  void read(const mapping::Cloud& cloud, std::uint16_t number) {
-    const scan::ScanPoints points = map_.pointsOf(cloud.id);
-    const mapping::PointAnswers answers = map_.answersFor(cloud);
+  /// `number`: the cloud's place in cloudsByTime().
+  void read(const mapping::Cloud& cloud, std::size_t number, const scan::ScanPoints& points,
+            const mapping::PointAnswers& answers) {
+    const auto cloud_in_page = static_cast<std::uint16_t>(number & 0xffffU);
     for (std::size_t i = 0; i < points.size(); ++i) {
-      const std::uint64_t hash = mixedBits((static_cast<std::uint64_t>(number) << 40U) + i);
+      const std::uint64_t hash = mixedBits((static_cast<std::uint64_t>(cloud_in_page) << 40U) + i);
       if ((hash >> 32U) >= kept_) continue;
       const Eigen::Vector3d p = scan::toMap(cloud.T_map_sensor, {points.x[i], points.y[i], points.z[i]});
       ViewPoint point = placed(p);
-      point.cloud = number;
+      point.cloud = cloud_in_page;
       point.level = levelOf(hash);
       point.label = answers.label[i];
       if (answers.object[i] != mapping::kNoObjectOfPoint) point.object = answers.object[i] + 1;
@@ -83,20 +85,21 @@ class CloudReader {
   }
 
   double heightOf(const Eigen::Vector3d& p, std::uint32_t cluxel) const {
-    const perception::SceneCluxels& cluxels = map_.scene().cluxels;
-    if (cluxel >= cluxels.size()) return 0;
-    return p.z() - cluxels.center[cluxel].z() + static_cast<double>(cluxels.height_above_ground[cluxel]);
+    if (cluxel >= heights_.size()) return 0;
+    const auto& [z_m, above_m] = heights_[cluxel];
+    return p.z() - static_cast<double>(z_m) + static_cast<double>(above_m);
   }
 
-  const mapping::MapReader& map_;
+  const std::vector<mapping::CluxelHeight>& heights_;
   std::uint64_t kept_;
   ViewTileMap& tiles_;
   ViewTileKey key_;
 };
 
-ViewTileMap pointsOf(const mapping::MapReader& map, const mapping::Cloud& cloud, std::size_t number) {
+ViewTileMap pointsOf(const mapping::MapReader& map, const std::vector<mapping::CluxelHeight>& heights,
+                     const mapping::Cloud& cloud, std::size_t number) {
   ViewTileMap tiles;
-  CloudReader(map, 1.0, tiles).read(cloud, static_cast<std::uint16_t>(number & 0xffffU));
+  CloudReader(heights, 1.0, tiles).read(cloud, number, map.pointsOf(cloud.id), map.answersFor(cloud));
   return tiles;
 }
 
@@ -208,7 +211,7 @@ std::string tileStateOf(const mapping::MapReader& map) {
     const Eigen::Matrix4d pose = cloud.T_map_sensor.matrix();
     hasher.add(cloud.id).addBytes(pose.data(), sizeof(double) * 16);
   }
-  for (const rules::SemanticObject& object : map.objects()) hasher.add(object.id);
+  for (const ContentHash& object : map.objectIds()) hasher.add(object);
   return hasher.finish().hex();
 }
 
@@ -224,6 +227,13 @@ struct PointTileSource::Kept {
   std::map<std::size_t, std::shared_ptr<CloudPoints>> clouds;
   std::deque<std::size_t> order;  ///< of clouds, the longest kept first
   std::uint64_t points = 0;
+  std::once_flag has_heights;
+  std::vector<mapping::CluxelHeight> heights;
+
+  const std::vector<mapping::CluxelHeight>& heightsIn(const mapping::MapReader& map) {
+    std::call_once(has_heights, [&] { heights = mapping::heightsOfCluxels(map); });
+    return heights;
+  }
 };
 
 PointTileSource::PointTileSource(const mapping::MapReader& map)
@@ -255,7 +265,7 @@ std::optional<PointTile> PointTileSource::tile(const mapping::MapReader& map, co
       continue;
     const std::shared_ptr<CloudPoints> cloud_points = placeOf(i);
     const std::lock_guard lock(cloud_points->mutex);
-    if (!cloud_points->tiles) cloud_points->tiles = pointsOf(map, cloud, i);
+    if (!cloud_points->tiles) cloud_points->tiles = pointsOf(map, kept_->heightsIn(map), cloud, i);
     const ViewTileMap& of_cloud = *cloud_points->tiles;
     if (const auto found = of_cloud.find(key); found != of_cloud.end())
       points.insert(points.end(), found->second.begin(), found->second.end());
@@ -280,8 +290,14 @@ PointTiles pointTilesOf(const mapping::MapReader& map, std::uint64_t max_points)
                            ? 1.0
                            : static_cast<double>(max_points) / static_cast<double>(result.points_in_map);
   ViewTileMap tiles;
-  CloudReader reader(map, share, tiles);
-  for (std::size_t i = 0; i < clouds.size(); ++i) reader.read(clouds[i], static_cast<std::uint16_t>(i & 0xffffU));
+  const std::vector<mapping::CluxelHeight> heights = mapping::heightsOfCluxels(map);
+  CloudReader reader(heights, share, tiles);
+  std::size_t number = 0;
+  mapping::forEachAnsweredCloud(
+      map, clouds,
+      [&](const mapping::Cloud& cloud, const scan::ScanPoints& points, const mapping::PointAnswers& answers) {
+        reader.read(cloud, number++, points, answers);
+      });
   result.intensity = intensityRange(tiles);
   for (auto& [key, points] : tiles) {
     result.points += points.size();
