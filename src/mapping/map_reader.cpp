@@ -65,7 +65,12 @@ struct MapReader::Impl {
   }
 
   const perception::Scene& readScene() {
-    return layers->scene.get([&] { return readStages().scene(storedClouds(transaction)); });
+    return layers->scene.get([&] {
+      if (stages.newest()) return readStages().scene(storedClouds(transaction));
+      TileStages only_for_scene(readModel(), readInputs().params);  // as large as the scene
+      only_for_scene.load(transaction);
+      return only_for_scene.takeScene(storedClouds(transaction));
+    });
   }
 
   const CluxelNumbers& readCluxelNumbers() {

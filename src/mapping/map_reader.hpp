@@ -100,7 +100,8 @@ class MapReader {
   std::vector<rules::SemanticObject> objectsByRules() const;
   /// Traces of the decisions about each of the scene's primitives; empty for a map that has none.
   std::vector<std::uint64_t> decisionTraces() const;
-  /// The scene, assembled from the stored tiles by the first call.
+  /// The scene, assembled from the stored tiles by the first call. Who needs stages(), too, takes these first, or they
+  /// are read twice.
   const perception::Scene& scene() const;
   /// The stored outputs of the stages without points and cluxels, read by the first call.
   const TileStages& stages() const;

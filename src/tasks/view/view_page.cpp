@@ -5,8 +5,10 @@
 #include <charconv>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "base/file_bytes.hpp"
+#include "base/free_memory.hpp"
 #include "cluxel/error.hpp"
 #include "tasks/explanation.hpp"
 #include "tasks/view/packed_quads.hpp"
@@ -58,11 +60,12 @@ std::uint64_t writeReasons(const mapping::MapReader& map, const ByteSink& out) {
 
 void writeData(const mapping::MapReader& map, const std::vector<Question>& questions, const ViewOptions& options,
                const ByteSink& out, ViewReport& report) {
-  const PointTiles tiles = pointTilesOf(map, options.max_points);
-  const PackedQuads quads = packedQuadsOf(map.quads(), options.max_quads);
+  PointTiles tiles = pointTilesOf(map, options.max_points);
+  PackedQuads quads = packedQuadsOf(map.quads(), options.max_quads);
+  returnFreeMemory();
   report.points = tiles.points;
   report.points_in_map = tiles.points_in_map;
-  report.objects = map.objects().size();
+  report.objects = map.objectIds().size();
   report.quads = quads.quad_count;
   report.quads_left_out = quads.left_out;
   report.object_bytes = writeBlock("map", mapValuesJson(map, tiles, quads.left_out, options, questions), out) +
@@ -70,8 +73,10 @@ void writeData(const mapping::MapReader& map, const std::vector<Question>& quest
                         writeBlock("changes", visitChangesJson(map, options.threads), out) +
                         writeBlock("lineage", lineageJson(map), out);
   for (std::size_t i = 0; i < tiles.tiles.size(); ++i)
-    report.point_bytes += writeBlock("tile-" + std::to_string(i), tiles.tiles[i].planes, out);
-  report.quad_bytes = writeBlock("terms", quads.terms, out) + writeBlock("quads", quads.quads, out);
+    report.point_bytes += writeBlock("tile-" + std::to_string(i), std::exchange(tiles.tiles[i].planes, {}), out);
+  report.quad_bytes = writeBlock("terms", std::exchange(quads.terms, {}), out) +
+                      writeBlock("quads", std::exchange(quads.quads, {}), out);
+  returnFreeMemory();  // reasons take much
   if (options.reasons) report.object_bytes += writeReasons(map, out);
 }
 
