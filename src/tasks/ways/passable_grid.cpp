@@ -96,33 +96,35 @@ void priceCells(const TerrainGrid& terrain, const WayParams& params, const std::
 }  // namespace
 
 NearestMarked nearestMarked(const GridFrame& frame, const std::vector<std::uint8_t>& marked) {
-  std::vector<double> squared(frame.size()), line, out;
-  std::vector<std::uint32_t> row_of(frame.size());
+  constexpr std::uint32_t no_row = 0xffffffffU;
+  std::vector<double> line, out;
   std::vector<int> from;
   const auto resize = [&](int n) {
     line.resize(static_cast<std::size_t>(n));
     out.resize(line.size());
     from.resize(line.size());
   };
+  NearestMarked nearest{std::vector<float>(frame.size()), std::vector<std::uint32_t>(frame.size())};
   resize(frame.rows);
-  for (int x = 0; x < frame.columns; ++x) {
+  for (int x = 0; x < frame.columns; ++x) {  // nearest.cell holds the row of the nearest mark of the column
     for (int y = 0; y < frame.rows; ++y) line[y] = marked[frame.index(x, y)] != 0 ? 0 : kInfinite;
     lineDistances(line, out, from);
-    for (int y = 0; y < frame.rows; ++y) {
-      squared[frame.index(x, y)] = out[y];
-      row_of[frame.index(x, y)] = static_cast<std::uint32_t>(from[y]);
-    }
+    for (int y = 0; y < frame.rows; ++y)
+      nearest.cell[frame.index(x, y)] = out[y] == kInfinite ? no_row : static_cast<std::uint32_t>(from[y]);
   }
-  NearestMarked nearest{std::vector<float>(frame.size()), std::vector<std::uint32_t>(frame.size())};
   resize(frame.columns);
+  std::vector<std::uint32_t> row_of(line.size());
   for (int y = 0; y < frame.rows; ++y) {
-    for (int x = 0; x < frame.columns; ++x) line[x] = squared[frame.index(x, y)];
+    for (int x = 0; x < frame.columns; ++x) {
+      row_of[x] = nearest.cell[frame.index(x, y)];
+      const double rows = static_cast<double>(y) - row_of[x];
+      line[x] = row_of[x] == no_row ? kInfinite : rows * rows;
+    }
     lineDistances(line, out, from);
     for (int x = 0; x < frame.columns; ++x) {
       const std::uint32_t cell = frame.index(x, y);
       nearest.distance[cell] = static_cast<float>(std::sqrt(out[x]));
-      nearest.cell[cell] =
-          out[x] == kInfinite ? cell : frame.index(from[x], static_cast<int>(row_of[frame.index(from[x], y)]));
+      nearest.cell[cell] = out[x] == kInfinite ? cell : frame.index(from[x], static_cast<int>(row_of[from[x]]));
     }
   }
   return nearest;
