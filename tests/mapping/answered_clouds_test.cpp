@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Clouds that are answered region by region are answered as by the whole map.
-#include "mapping/answered_clouds.hpp"
+#include "mapping/regions/answered_clouds.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Regions say of their cluxels, objects and points what the whole map says.
-#include "mapping/map_regions.hpp"
+#include "mapping/regions/map_regions.hpp"
 
 #include <gtest/gtest.h>
 

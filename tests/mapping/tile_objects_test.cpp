@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What single tiles say of objects is what the scene of the whole map says.
-#include "mapping/tile_objects.hpp"
+#include "mapping/regions/tile_objects.hpp"
 
 #include <gtest/gtest.h>
 

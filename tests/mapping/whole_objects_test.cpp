@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Objects that are read region by region have the cluxels, and the measures, that the scene gives them.
-#include "mapping/whole_objects.hpp"
+#include "mapping/regions/whole_objects.hpp"
 
 #include <gtest/gtest.h>
 

@@ -9,10 +9,10 @@
 
 #include "base/parallel.hpp"
 #include "mapping/facts/object_geometry.hpp"
-#include "mapping/map_regions.hpp"
 #include "mapping/presence/presence_votes.hpp"
 #include "mapping/presence/ray_pass.hpp"
 #include "mapping/presence/ray_targets.hpp"
+#include "mapping/regions/map_regions.hpp"
 #include "tasks/changes/changed_parts.hpp"
 #include "tasks/changes/kept_cells.hpp"
 #include "tasks/changes/kept_cluxels.hpp"

@@ -8,8 +8,8 @@
 #include <unordered_map>
 
 #include "base/csv_text.hpp"
-#include "mapping/map_regions.hpp"
 #include "mapping/presence/ray_pass.hpp"
+#include "mapping/regions/map_regions.hpp"
 
 namespace cluxel::tasks {
 

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "mapping/map_regions.hpp"
+#include "mapping/regions/map_regions.hpp"
 #include "tasks/changes/change_groups.hpp"
 #include "tasks/changes/kept_cluxels.hpp"
 #include "tasks/changes/point_cells.hpp"

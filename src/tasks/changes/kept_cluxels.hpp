@@ -7,7 +7,7 @@
 #include <unordered_set>
 #include <vector>
 
-#include "mapping/map_regions.hpp"
+#include "mapping/regions/map_regions.hpp"
 #include "tasks/changes/changed_cluxels.hpp"
 
 namespace cluxel::tasks {

@@ -10,7 +10,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "mapping/map_regions.hpp"
+#include "mapping/regions/map_regions.hpp"
 #include "perception/tile.hpp"
 #include "perception/visibility/scan_rays.hpp"
 #include "tasks/changes/changed_cluxels.hpp"

@@ -9,9 +9,9 @@
 #include <numeric>
 
 #include "cluxel/error.hpp"
-#include "mapping/answered_clouds.hpp"
 #include "mapping/layers/stored_layers.hpp"
 #include "mapping/map_inputs.hpp"
+#include "mapping/regions/answered_clouds.hpp"
 #include "tasks/evaluation/object_matching.hpp"
 #include "tasks/evaluation/truth_class.hpp"
 

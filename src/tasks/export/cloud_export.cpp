@@ -8,8 +8,8 @@
 #include <cstring>
 #include <string>
 
-#include "mapping/answered_clouds.hpp"
 #include "mapping/layers/stored_layers.hpp"
+#include "mapping/regions/answered_clouds.hpp"
 #include "rdf/ontology/ontology.hpp"
 
 namespace cluxel::tasks {

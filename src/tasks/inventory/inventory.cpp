@@ -12,7 +12,7 @@
 
 #include "base/convex_hull.hpp"
 #include "mapping/facts/object_geometry.hpp"
-#include "mapping/whole_objects.hpp"
+#include "mapping/regions/whole_objects.hpp"
 #include "rdf/map_iris.hpp"
 #include "rdf/vocabulary.hpp"
 #include "sparql/query_engine.hpp"

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mapping/tile_objects.hpp"
+#include "mapping/regions/tile_objects.hpp"
 
 namespace cluxel::tasks {
 

@@ -14,7 +14,7 @@
 #include "base/content_hash.hpp"
 #include "base/mixed_bits.hpp"
 #include "base/packing/zstd_packing.hpp"
-#include "mapping/answered_clouds.hpp"
+#include "mapping/regions/answered_clouds.hpp"
 
 namespace cluxel::tasks {
 

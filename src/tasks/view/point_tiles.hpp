@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "mapping/map_reader.hpp"
-#include "mapping/tile_objects.hpp"
+#include "mapping/regions/tile_objects.hpp"
 
 namespace cluxel::tasks {
 

@@ -8,8 +8,8 @@
 #include <limits>
 
 #include "cluxel/error.hpp"
+#include "mapping/regions/tile_objects.hpp"
 #include "mapping/stored_grid.hpp"
-#include "mapping/tile_objects.hpp"
 #include "rdf/ontology/ontology.hpp"
 #include "rdf/vocabulary.hpp"
 #include "tasks/ways/low_points.hpp"

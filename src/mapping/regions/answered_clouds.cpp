@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Clouds are not in an order of places, and each lies in several regions. So each region answers for its points of all
 // clouds, and a cloud's answers are put together from these pieces.
-#include "mapping/answered_clouds.hpp"
+#include "mapping/regions/answered_clouds.hpp"
 
 #include <algorithm>
 #include <map>
@@ -15,9 +15,9 @@
 #include "mapping/damaged_map.hpp"
 #include "mapping/layers/stored_layers.hpp"
 #include "mapping/map_tables.hpp"
+#include "mapping/regions/tile_objects.hpp"
+#include "mapping/regions/tile_regions.hpp"
 #include "mapping/stored_grid.hpp"
-#include "mapping/tile_objects.hpp"
-#include "mapping/tile_regions.hpp"
 #include "perception/crf/labelling.hpp"
 
 namespace cluxel::mapping {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Objects are read with the region of their first tile.
-#include "mapping/whole_objects.hpp"
+#include "mapping/regions/whole_objects.hpp"
 
 #include <algorithm>
 
@@ -8,7 +8,7 @@
 #include "mapping/damaged_map.hpp"
 #include "mapping/layers/stored_layers.hpp"
 #include "mapping/map_tables.hpp"
-#include "mapping/tile_regions.hpp"
+#include "mapping/regions/tile_regions.hpp"
 #include "perception/segments/summary_tile.hpp"
 
 namespace cluxel::mapping {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A region holds the stored outputs of its tiles, and of those of its objects.
-#include "mapping/map_regions.hpp"
+#include "mapping/regions/map_regions.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -10,7 +10,7 @@
 #include "mapping/damaged_map.hpp"
 #include "mapping/facts/object_geometry.hpp"
 #include "mapping/layers/stored_layers.hpp"
-#include "mapping/tile_regions.hpp"
+#include "mapping/regions/tile_regions.hpp"
 #include "rdf/vocabulary.hpp"
 
 namespace cluxel::mapping {

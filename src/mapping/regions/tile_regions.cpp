@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Halves are cut at the middle tile, whatever the tiles hold.
-#include "mapping/tile_regions.hpp"
+#include "mapping/regions/tile_regions.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tiles name objects by their ids; readers count them in the order of these.
-#include "mapping/tile_objects.hpp"
+#include "mapping/regions/tile_objects.hpp"
 
 #include <algorithm>
 
@@ -9,8 +9,8 @@
 #include "mapping/damaged_map.hpp"
 #include "mapping/layers/stored_layers.hpp"
 #include "mapping/map_tables.hpp"
+#include "mapping/regions/tile_regions.hpp"
 #include "mapping/stored_grid.hpp"
-#include "mapping/tile_regions.hpp"
 #include "perception/segments/summary_tile.hpp"
 #include "perception/tile_borders.hpp"
 
