@@ -1,10 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// Dijkstra's algorithm on the usable cells, with a heap of Boost.
+// The usable cells as an implicit graph of Boost, and Dijkstra's algorithm on it.
 #include "tasks/ways/way_search.hpp"
 
 #include <algorithm>
-#include <boost/graph/detail/d_ary_heap.hpp>
+#include <array>
+#include <boost/graph/dijkstra_shortest_paths.hpp>
+#include <boost/graph/graph_traits.hpp>
+#include <boost/graph/two_bit_color_map.hpp>
+#include <boost/iterator/iterator_facade.hpp>
+#include <boost/property_map/property_map.hpp>
 #include <cmath>
+#include <cstddef>
 #include <functional>
 #include <limits>
 #include <numeric>
@@ -14,38 +20,79 @@ namespace cluxel::tasks {
 
 namespace {
 
-/// What a cell is to a search.
-enum class Visited : std::uint8_t { No, Waiting, Done };
+using Cell = std::uint32_t;
 
-/// Steps between cells that may be used. They are told when they are asked for: a graph of them takes 200 bytes a cell.
-class CellSteps {
+struct CellStep {
+  Cell from = 0, to = 0;
+  double cost = 0;
+  bool operator==(const CellStep&) const = default;
+};
+
+/// The steps from a cell, of which there are eight at most.
+struct CellSteps {
+  std::array<CellStep, 8> step;
+  std::ptrdiff_t count = 0;
+};
+
+class StepIterator
+    : public boost::iterator_facade<StepIterator, const CellStep, boost::random_access_traversal_tag, const CellStep&> {
  public:
-  CellSteps(const PassableGrid& grid, const SearchRules& rules) : grid_(grid), rules_(rules) {}
+  StepIterator() = default;
+  StepIterator(const CellSteps& steps, std::ptrdiff_t at) : steps_(steps), at_(at) {}
 
-  bool mayUse(std::uint32_t cell) const { return isOpen(cell) || rules_.closed_cost; }
+ private:
+  friend class boost::iterator_core_access;
+  const CellStep& dereference() const { return steps_.step[static_cast<std::size_t>(at_)]; }
+  bool equal(const StepIterator& other) const { return at_ == other.at_; }
+  void increment() { ++at_; }
+  void decrement() { --at_; }
+  void advance(std::ptrdiff_t count) { at_ += count; }
+  std::ptrdiff_t distance_to(const StepIterator& other) const { return other.at_ - at_; }
 
-  /// Calls `visit(to, cost)` for each neighbour that may be entered, row by row.
-  template <typename Visit>
-  void forEachFrom(std::uint32_t from, const Visit& visit) const {
+  CellSteps steps_;
+  std::ptrdiff_t at_ = 0;
+};
+
+/// The cells of a grid as vertices. Edges are told when they are asked for: to hold them takes 200 bytes a cell.
+class CellGraph {
+ public:
+  using vertex_descriptor = Cell;
+  using edge_descriptor = CellStep;
+  using out_edge_iterator = StepIterator;
+  using vertices_size_type = std::size_t;
+  using degree_size_type = std::size_t;
+  using directed_category = boost::directed_tag;
+  using edge_parallel_category = boost::disallow_parallel_edge_tag;
+  struct traversal_category : boost::incidence_graph_tag {};
+
+  CellGraph(const PassableGrid& grid, const SearchRules& rules) : grid_(grid), rules_(rules) {}
+
+  std::size_t size() const { return grid_.frame.size(); }
+  bool mayUse(Cell cell) const { return isOpen(cell) || rules_.closed_cost; }
+
+  /// To each neighbour that may be entered, row by row.
+  CellSteps stepsFrom(Cell from) const {
     const GridFrame& frame = grid_.frame;
     const int x = frame.columnOf(from), y = frame.rowOf(from);
+    CellSteps steps;
     for (int dy = -1; dy <= 1; ++dy)
       for (int dx = -1; dx <= 1; ++dx) {
         if ((dx == 0 && dy == 0) || !frame.holds(x + dx, y + dy)) continue;
-        const std::uint32_t to = frame.index(x + dx, y + dy);
+        const Cell to = frame.index(x + dx, y + dy);
         const bool is_diagonal = dx != 0 && dy != 0;
         // A diagonal step needs both cells beside it, also on a way that may cross closed cells.
         if (!mayUse(to) || (is_diagonal && !(isOpen(frame.index(x + dx, y)) && isOpen(frame.index(x, y + dy)))))
           continue;
         if (!grid_.isStepOpen(from, to) && !rules_.closed_cost) continue;
-        visit(to, costOf(from, to, is_diagonal));
+        steps.step[static_cast<std::size_t>(steps.count++)] = {from, to, costOf(from, to, is_diagonal)};
       }
+    return steps;
   }
 
  private:
-  bool isOpen(std::uint32_t cell) const { return grid_.closure[cell] == Closure::Open; }
+  bool isOpen(Cell cell) const { return grid_.closure[cell] == Closure::Open; }
 
-  double costOf(std::uint32_t from, std::uint32_t to, bool is_diagonal) const {
+  double costOf(Cell from, Cell to, bool is_diagonal) const {
     const double length_m = grid_.frame.cell_m * (is_diagonal ? std::sqrt(2.0) : 1.0);
     const double factor =
         rules_.is_priced ? (static_cast<double>(grid_.factor[from]) + static_cast<double>(grid_.factor[to])) / 2 : 1.0;
@@ -57,57 +104,63 @@ class CellSteps {
   const SearchRules& rules_;
 };
 
-/// Dijkstra's algorithm. Equal costs keep the way that was found first.
-class Search {
- public:
-  Search(const PassableGrid& grid, const SearchRules& rules)
-      : steps_(grid, rules),
-        ways_{std::vector<double>(grid.frame.size(), kInfinite), std::vector<std::uint32_t>(grid.frame.size())},
-        visited_(grid.frame.size(), Visited::No),
-        place_in_queue_(grid.frame.size(), 0),
-        queue_(ways_.cost.data(), place_in_queue_.data()) {
-    std::iota(ways_.before.begin(), ways_.before.end(), 0U);
+// What Boost asks of a graph.
+[[maybe_unused]] std::size_t num_vertices(const CellGraph& graph) {
+  return graph.size();
+}
+[[maybe_unused]] std::pair<StepIterator, StepIterator> out_edges(Cell cell, const CellGraph& graph) {
+  const CellSteps steps = graph.stepsFrom(cell);
+  return {StepIterator(steps, 0), StepIterator(steps, steps.count)};
+}
+[[maybe_unused]] std::size_t out_degree(Cell cell, const CellGraph& graph) {
+  return static_cast<std::size_t>(graph.stepsFrom(cell).count);
+}
+[[maybe_unused]] Cell source(const CellStep& step, const CellGraph&) {
+  return step.from;
+}
+[[maybe_unused]] Cell target(const CellStep& step, const CellGraph&) {
+  return step.to;
+}
+
+/// The cost of an edge, which it holds itself.
+struct CostOfStep {
+  using key_type = CellStep;
+  using value_type = double;
+  using reference = double;
+  using category = boost::readable_property_map_tag;
+};
+[[maybe_unused]] double get(const CostOfStep&, const CellStep& step) {
+  return step.cost;
+}
+
+/// Ends the search when the goal's cost is known.
+struct GoalReached {};
+struct StopAtGoal : boost::default_dijkstra_visitor {
+  explicit StopAtGoal(std::optional<Cell> goal_cell) : goal(goal_cell) {}
+  void examine_vertex(Cell cell, const CellGraph&) const {
+    if (cell == goal) throw GoalReached();
   }
-
-  CheapestWays from(std::uint32_t start, const std::optional<std::uint32_t>& goal) {
-    if (!steps_.mayUse(start)) return std::move(ways_);
-    ways_.cost[start] = 0;
-    visited_[start] = Visited::Waiting;
-    queue_.push(start);
-    while (!queue_.empty()) {
-      const std::uint32_t cell = queue_.top();
-      queue_.pop();
-      if (cell == goal) break;
-      const double cost = ways_.cost[cell];
-      steps_.forEachFrom(cell, [&](std::uint32_t to, double more) { reach(to, cell, cost + more); });
-      visited_[cell] = Visited::Done;
-    }
-    return std::move(ways_);
-  }
-
- private:
-  static constexpr double kInfinite = std::numeric_limits<double>::infinity();
-  static constexpr std::size_t kChildren = 4;
-
-  void reach(std::uint32_t cell, std::uint32_t before, double cost) {
-    if (visited_[cell] == Visited::Done || !(cost < ways_.cost[cell])) return;
-    ways_.cost[cell] = cost;
-    ways_.before[cell] = before;
-    const bool is_new = std::exchange(visited_[cell], Visited::Waiting) == Visited::No;
-    is_new ? queue_.push(cell) : queue_.update(cell);
-  }
-
-  CellSteps steps_;
-  CheapestWays ways_;
-  std::vector<Visited> visited_;
-  std::vector<std::uint32_t> place_in_queue_;
-  boost::d_ary_heap_indirect<std::uint32_t, kChildren, std::uint32_t*, double*, std::less<double>> queue_;
+  std::optional<Cell> goal;
 };
 
 }  // namespace
 
 CheapestWays cheapestWays(const PassableGrid& grid, std::uint32_t start, const SearchRules& rules) {
-  return Search(grid, rules).from(start, rules.goal);
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  const CellGraph graph(grid, rules);
+  CheapestWays ways{std::vector<double>(graph.size(), infinite), std::vector<std::uint32_t>(graph.size())};
+  std::iota(ways.before.begin(), ways.before.end(), 0U);
+  if (!graph.mayUse(start)) return ways;
+  ways.cost[start] = 0;
+  const boost::typed_identity_property_map<Cell> index;
+  try {
+    boost::dijkstra_shortest_paths_no_init(graph, start, boost::make_iterator_property_map(ways.before.begin(), index),
+                                           boost::make_iterator_property_map(ways.cost.begin(), index), CostOfStep{},
+                                           index, std::less<double>(), std::plus<double>(), 0.0, StopAtGoal(rules.goal),
+                                           boost::make_two_bit_color_map(graph.size(), index));
+  } catch (const GoalReached&) {  // the cost of the goal is known
+  }
+  return ways;
 }
 
 std::vector<std::uint32_t> wayTo(const CheapestWays& ways, std::uint32_t goal) {
