@@ -3,6 +3,7 @@
 // back: a changed map is then the one that a build makes from nothing.
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <memory>
 #include <numeric>
 #include <set>
@@ -10,6 +11,9 @@
 #include "mapping/build/freed_tiles.hpp"
 #include "mapping/change/map_change.hpp"
 #include "mapping/change/map_merge.hpp"
+#include "mapping/change/map_update.hpp"
+#include "mapping/change/rdf_loading.hpp"
+#include "mapping/facts/told_ways.hpp"
 #include "mapping/map_tables.hpp"
 #include "mapping/presence/stored_presence.hpp"
 #include "tasks/box_visits.hpp"
@@ -88,6 +92,11 @@ class GoneGround : public testing::Test {
     });
     return tiles;
   }
+  /// Whether the next change computes only what follows from it. False also for a map without freed tiles.
+  static bool areUpToDate(const fs::path& map) {
+    rdf::WriteTransaction transaction = Environment::open(map, OpenMode::ReadWrite)->write();
+    return freedIn(map) > 0 && copyFreedTiles(transaction, transaction, {}) && storedToldWays(transaction).has_value();
+  }
   static double areaOf(const WayGraph& ways) {
     return std::accumulate(ways.regions.begin(), ways.regions.end(), 0.0,
                            [](double sum, const Region& region) { return sum + region.area_m2; });
@@ -159,6 +168,27 @@ TEST_F(GoneGround, IsTheSameInMergesAndBatches) {
   mergeMaps({maps[0], maps[2]}, folder->path() / "merged.clx", params, silence());
   EXPECT_TRUE(contentOf(folder->path() / "merged.clx") == fromScratch({0, 1}));
   EXPECT_TRUE(contentOf(build(scansIn({0, 1}), "map.clx", {.threads = 2, .batch_points = 1})) == fromScratch({0, 1}));
+}
+
+TEST_F(GoneGround, IsUpToDateAfterMergesUpdatesAndLoads) {
+  const fs::path first = build(scansIn({0}), "first.clx"), second = build(scansIn({1}), "second.clx");
+  const fs::path map = folder->path() / "merged.clx";
+  MergeParams params;
+  params.force = true;
+  mergeMaps({{first}, {second}}, map, params, silence());
+  EXPECT_TRUE(areUpToDate(map)) << "after a merge";
+
+  updateMap(map, "INSERT DATA { <https://e.org/a> <https://e.org/p> 1 }", {}, silence());
+  EXPECT_TRUE(areUpToDate(map)) << "after an update";
+
+  const fs::path triples = folder->path() / "more.ttl";
+  std::ofstream(triples) << "<https://e.org/b> <https://e.org/p> 2 .\n";
+  EXPECT_EQ(loadRdfFiles(map, {triples}, {}, silence()).added, 1U);
+  EXPECT_TRUE(areUpToDate(map)) << "after a load";
+
+  extendMap(map, scansIn({2}), {}, silence());
+  retractScans(map, idsIn(2), {}, silence());
+  EXPECT_TRUE(areUpToDate(map)) << "after other changes";
 }
 
 }  // namespace

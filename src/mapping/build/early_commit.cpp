@@ -104,6 +104,9 @@ void commitPoints(std::span<const scan::ScanId> scans, rdf::WriteTransaction& tr
   std::vector<std::string> keys;
   for (const scan::ScanId& scan : scans) keys.push_back(tables::keyOf(scan));
   moveBlocks(transaction, tables::kScans, tables::kScansToCome, keys);
+  // Freed tiles and facts about ways lose their stamps here on purpose. After a kill the outputs of new tiles are
+  // stored already, and the next change finds them equal. The lost stamp alone then makes the freed tiles beside them
+  // follow.
   transaction.commit();
   transaction = beginWhenFree(begin);
   moveBlocks(transaction, tables::kScansToCome, tables::kScans, keys);

@@ -26,7 +26,8 @@ std::optional<std::string_view> freedTile(const rdf::ReadTransaction& transactio
 perception::TileSet updateFreedTiles(rdf::WriteTransaction& transaction, const perception::LabelModel& model,
                                      const MapParams& params, const perception::TileSet& changed, unsigned threads);
 
-/// To be called by each other commit that changes the map: it leaves objects and outputs as they are.
+/// To be called before each other commit that changes the map and leaves objects and outputs as they are. A commit
+/// without it makes the next change compute all freed tiles.
 void keepFreedTiles(rdf::WriteTransaction& transaction);
 
 /// Ways then follow from what was measured alone, until the next update. Returns as updateFreedTiles().

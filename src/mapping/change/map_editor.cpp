@@ -19,6 +19,7 @@
 #include "mapping/build/stage_clock.hpp"
 #include "mapping/change/map_things.hpp"
 #include "mapping/facts/map_history.hpp"
+#include "mapping/facts/told_ways.hpp"
 #include "mapping/layers/semantic_state.hpp"
 #include "mapping/layers/stored_layers.hpp"
 #include "mapping/map_state.hpp"
@@ -301,6 +302,7 @@ void MapEditor::writeDeferredThings(const NamesInMaps& names) {
   if (!last_activity_.empty()) addLineage(transaction, last_activity_, report_.objects);
   removeEndsOf(transaction, storedObjectIds(transaction));
   writeThingsOfMerge(transaction, dateTimeText(secondsNow()), report_.before, report_.after, names);
+  keepToldWays(transaction);
   if (!params_.dry_run) transaction.commit();
 }
 

@@ -15,6 +15,7 @@
 #include "mapping/change/map_things.hpp"
 #include "mapping/facts/map_history.hpp"
 #include "mapping/facts/semantic_layer.hpp"
+#include "mapping/facts/told_ways.hpp"
 #include "mapping/map_state.hpp"
 #include "mapping/statements/deleted_statements.hpp"
 #include "mapping/statements/named_resources.hpp"
@@ -86,6 +87,7 @@ ChangeReport inferAfterUpdate(rdf::WriteTransaction& transaction, const std::set
   report.class_names = namesOf(parsed.rules.catalogue);
   if (!parsed.rules.asks_map && !has_news) {
     addWholeRules(inferFacts(transaction, parsed.inputs, sink, check), report.rules_evaluated_whole, sink);
+    keepToldWays(transaction);
     tellMap(report, transaction);
     report.statements = toldOutcomes(rdf::QuadReader(static_cast<const rdf::ReadTransaction&>(transaction)));
     return report;

@@ -26,8 +26,8 @@ struct ToldWay {
 /// may have told other facts. Throws Error (StoreUnavailable) when the block is malformed.
 std::optional<std::vector<ToldWay>> storedToldWays(const rdf::ReadTransaction& transaction);
 void storeToldWays(rdf::WriteTransaction& transaction, const std::vector<ToldWay>& ways);
-/// To be called by each other commit that changes the map: it leaves the facts about ways as they are, and the freed
-/// ground that they follow from.
+/// To be called before each other commit that changes the map and leaves the facts about ways as they are, and the
+/// freed ground that they follow from. A commit without it makes the next change tell all ways.
 void keepToldWays(rdf::WriteTransaction& transaction);
 
 }  // namespace cluxel::mapping
