@@ -273,7 +273,10 @@ void UpdateRun::checkRemovable(const rdf::QuadReader& reader, const std::vector<
 
 void UpdateRun::apply(const rdf::QuadReader& reader, const Changes& changes) {
   if (options_.on_removal)
-    for (const ChangedQuad& removal : changes.removed) options_.on_removal(removal.quad);
+    for (const ChangedQuad& removal : changes.removed) {
+      guard_.work(1);
+      options_.on_removal(removal.quad);
+    }
   const ChangeCounts counts = applyChanges(reader, writer_, changes, guard_);
   report_.inserted += counts.inserted;
   report_.deleted += counts.deleted;

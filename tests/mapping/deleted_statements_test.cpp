@@ -111,6 +111,34 @@ TEST_F(DeletedQuads, LeaveOtherStatementsAndWhatIsStatedAgain) {
   EXPECT_TRUE(statements().empty()) << "the deletion is last";
 }
 
+TEST_F(DeletedQuads, WithdrawOnlyWhatIsStatedOfTheirObject) {
+  const MapReader reader(map());
+  std::vector<std::string> objects;
+  for (const rules::SemanticObject& each : reader.objects())
+    if (!each.is_class_wide && objects.size() < 3) objects.push_back("<" + rdf::iriOfObject(each.id) + ">");
+  ASSERT_EQ(objects.size(), 3U);
+  std::string all;
+  for (const std::string& each : objects) all += each + kLabelled + ". ";
+  update("INSERT DATA { " + all + "}");
+  ASSERT_EQ(statements().size(), 3U);
+  EXPECT_EQ(update("DELETE DATA " + inOperator(objects[0] + kLabelled + ". " + objects[2] + kLabelled)).deleted, 2U);
+  ASSERT_EQ(statements().size(), 1U);
+  EXPECT_EQ("<" + statements().front().object + ">", objects[1]);
+}
+
+TEST_F(DeletedQuads, WithdrawStatementsBesideAMalformedOne) {
+  update("INSERT DATA { " + object + kLabelled + "}");
+  const std::string statement = statements().front().statement.id().hex();
+  const std::string malformed =
+      "<" + rdf::iriOfStatement(ContentHash()) + "> a <" + rdf::vocabulary::clx("OperatorStatement") + "> ";
+  rdf::WriteTransaction transaction = rdf::Environment::open(map(), rdf::OpenMode::ReadWrite)->write();
+  sparql::runUpdate(transaction, "INSERT DATA " + inOperator(malformed), {});
+  transaction.commit();
+  EXPECT_EQ(update("DELETE DATA " + inOperator(malformed + " . " + object + kLabelled)).deleted, 2U);
+  EXPECT_THAT(notes.all, AllOf(HasSubstr(statement), HasSubstr("withdrawn")));
+  EXPECT_TRUE(statements().empty());
+}
+
 TEST_F(DeletedQuads, WithoutAGraphAreRefusedWithTheWayThatWorks) {
   update("INSERT DATA { " + object + kLabelled + "}");
   const std::string statement = statements().front().statement.id().hex();

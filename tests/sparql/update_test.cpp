@@ -157,6 +157,22 @@ TEST_F(Updates, CountTheNetChangeOfATransfer) {
   EXPECT_THAT(in("http://example.org/h"), ElementsAre(":x :n \"1\"^^integer", ":x :n \"2\"^^integer"));
 }
 
+TEST_F(Updates, HeedTheirBudgetWhileTheyTellOfRemovals) {
+  std::string quads;
+  for (int i = 0; i < 10'000; ++i) quads += ":a :p " + std::to_string(i) + " . ";
+  std::size_t calls = 0, told = 0, at_first = 0, at_last = 0;
+  UpdateOptions options;
+  options.query.budget.poll = [&calls] { ++calls; };
+  options.on_removal = [&](const Quad&) {
+    if (++told == 1) at_first = calls;
+    at_last = calls;
+  };
+  const std::string graph(vocabulary::kGraphOperator);
+  change("DELETE DATA { GRAPH <" + graph + "> { " + quads + " } }", options);
+  EXPECT_EQ(told, 10'000U);
+  EXPECT_GT(at_last, at_first);
+}
+
 TEST_F(Updates, RefuseToDeleteWhatOnlyABuildWrites) {
   store_.load(":a :kind :Plant .", std::string(vocabulary::kGraphInferred));
   change("INSERT DATA { :a :note 1 }");

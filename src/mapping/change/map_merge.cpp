@@ -254,7 +254,8 @@ class Merge {
   void leaveOutWithdrawn(ScanAdditions& additions) {
     const std::vector<ContentHash> withdrawn = withdrawnAmong(quadsOfMaps());
     std::vector<std::string> ids;
-    for (const ContentHash& id : withdrawn) eraseStatement(additions.transaction(), id), ids.push_back(id.hex());
+    eraseStatements(additions.transaction(), withdrawn);
+    for (const ContentHash& id : withdrawn) ids.push_back(id.hex());
     if (ids.empty()) return;
     sink_.note(std::to_string(ids.size()) +
                " operator statements are left out, because one of the maps has withdrawn " + "them: " + joined(ids) +

@@ -134,9 +134,9 @@ MapUpdateReport updateMap(const std::filesystem::path& file, const std::string& 
     run_options.remedy_for = [&deleted](const Quad& triple) { return deleted->remedyFor(triple); };
   }
   static_cast<sparql::UpdateReport&>(report) = runUpdate(transaction, update, run_options);
+  const rdf::FlushPoll poll(transaction, [&check] { check(0); });
   if (deleted) report.deleted += deleted->withdraw(transaction, notes);
   if (is_map && report.inserted + report.deleted > 0) {
-    const rdf::FlushPoll poll(transaction, [&check] { check(0); });
     try {
       report.change = inferAfterUpdate(transaction, before, notes, check, params);
     } catch (const RefusedQuad& refused) {

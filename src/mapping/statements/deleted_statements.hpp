@@ -17,7 +17,7 @@ namespace cluxel::mapping {
 
 class DeletedStatements {
  public:
-  /// `transaction`: before the update. Statements that are malformed, which the update may mend, do not count.
+  /// `transaction`: before the update. A statement that is malformed, which the update may mend, does not count.
   explicit DeletedStatements(const rdf::ReadTransaction& transaction);
 
   /// Notes which statements say what a quad says that the update deletes from graph `operator`. It need not be there.
@@ -30,12 +30,21 @@ class DeletedStatements {
   std::string remedyFor(const Quad& triple);
 
  private:
-  /// The statements of this about the object that the subject means now.
+  using ByObject = std::map<std::string, std::vector<ContentHash>>;  ///< by the IRI of what they apply to
+  /// Statements that say the same.
+  struct Saying {
+    std::vector<ContentHash> statements;
+    std::optional<ByObject> by_object;  ///< once it is needed
+  };
+
+  const ByObject& byObject(Saying& saying) const;
+  /// The statements of this about the object that the subject means now. Reads each statement once, however many quads
+  /// are deleted.
   std::vector<ContentHash> thatSay(const Quad& triple);
 
   const rdf::ReadTransaction& transaction_;
-  std::map<std::pair<std::string, Term>, std::vector<ContentHash>> saying_;  ///< by property and value
-  std::optional<KnownObjects> known_;                                        ///< once it is needed
+  std::map<std::pair<std::string, Term>, Saying> saying_;  ///< by property and value
+  std::optional<KnownObjects> known_;                      ///< once it is needed
   std::vector<std::pair<Quad, ContentHash>> deleted_;
 };
 

@@ -104,9 +104,9 @@ bool withdrawStatement(rdf::WriteTransaction& transaction, const ContentHash& id
   return true;
 }
 
-void eraseStatement(rdf::WriteTransaction& transaction, const ContentHash& id) {
+void eraseStatements(rdf::WriteTransaction& transaction, std::span<const ContentHash> ids) {
   StatementWriter writer(transaction);
-  writer.remove(id, rdf::vocabulary::kGraphOperator);
+  for (const ContentHash& id : ids) writer.remove(id, rdf::vocabulary::kGraphOperator);
   writer.flush();
 }
 

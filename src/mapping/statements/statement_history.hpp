@@ -18,8 +18,8 @@ bool addStatement(rdf::WriteTransaction& transaction, const Statement& statement
 /// Removes a statement, and records when. Returns false for one that was withdrawn before. Throws Error (NotFound) for
 /// one that never was there.
 bool withdrawStatement(rdf::WriteTransaction& transaction, const ContentHash& id, const std::string& author);
-/// Removes a statement that another map has withdrawn, whose history tells when.
-void eraseStatement(rdf::WriteTransaction& transaction, const ContentHash& id);
+/// Removes statements of which the history tells when they were withdrawn, or will be told.
+void eraseStatements(rdf::WriteTransaction& transaction, std::span<const ContentHash> ids);
 
 /// Records statements that quads of graph `operator` made or withdrew. `author` may be empty.
 void recordStatements(rdf::WriteTransaction& transaction, const std::vector<ContentHash>& made,
