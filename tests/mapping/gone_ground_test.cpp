@@ -191,5 +191,82 @@ TEST_F(GoneGround, IsUpToDateAfterMergesUpdatesAndLoads) {
   EXPECT_TRUE(areUpToDate(map)) << "after other changes";
 }
 
+/// Two stretches of a street, side by side. A car has left each of them at its second visit, near the other one.
+class GoneOnStreets : public GoneGround {
+ protected:
+  static void SetUpTestSuite() {
+    folder = new rdf::ScratchFolder;
+    inputs = new MapInputs(shippedInputs());
+    constexpr double kEast_m = 43.9;  // tiles end in the middle of the cars that leave
+    const std::vector<Box> stays{boxFrom({-15, 10, 0}, {15, 10.5, 5}), boxFrom({-15, -12.5, 0}, {15, -12, 5}),
+                                 boxFrom({-5, 4, 0.05}, {-0.8, 5.8, 1.5}), boxFrom({8.5, 4, 0.05}, {12.7, 5.8, 1.5})};
+    for (const bool is_west : {true, false}) {
+      const double side = is_west ? -1 : 1;
+      const auto placed = [&](const Box& box) {
+        const double a = side * (kEast_m + box.min().x()), b = side * (kEast_m + box.max().x());
+        return boxFrom({std::min(a, b), box.min().y(), box.min().z()}, {std::max(a, b), box.max().y(), box.max().z()});
+      };
+      std::vector<Box> rest;
+      for (const Box& box : stays) rest.push_back(placed(box));
+      std::vector<Box> all = rest;
+      all.push_back(placed(kLeaves));
+      std::vector<Eigen::Vector3d> sensors;
+      for (const Eigen::Vector3d& at : {Eigen::Vector3d(1, -1, 1.8), {5, 0, 1.8}, {8, 1, 1.8}})
+        sensors.emplace_back(side * (kEast_m + at.x()), at.y(), at.z());
+      tasks::writeVisits({{all, sensors}, {rest, sensors}}, streetOf(is_west));
+    }
+    whole = contentOf(build(scansOf({streetOf(true), streetOf(false)}), "whole.clx"));
+  }
+  static fs::path streetOf(bool is_west) { return folder->path() / (is_west ? "west" : "east"); }
+
+  /// Takes the ground out of all freed tiles: they are not those of the map any more. An earlier program, which knows
+  /// none, leaves the stamp that they had.
+  static void spoil(const fs::path& map, bool renews_stamp) {
+    rdf::WriteTransaction transaction = Environment::open(map, OpenMode::ReadWrite)->write();
+    std::map<std::string, std::string> others;
+    transaction.forEachBlock(tables::kFreed, "", [&](std::string_view key, std::string_view bytes) {
+      others.emplace(key, bytes.substr(0, sizeof(ContentHash::bytes)));
+    });
+    for (const auto& [key, bytes] : others) transaction.putBlock(tables::kFreed, key, bytes);
+    if (renews_stamp) keepFreedTiles(transaction);
+    transaction.commit();
+  }
+  inline static std::string whole;  ///< what a build of all scans makes
+};
+
+TEST_F(GoneOnStreets, IsTheSameWhereAMapLendsIt) {
+  const fs::path merged = folder->path() / "merged.clx";
+  MergeParams params;
+  params.force = true, params.change.max_window_share = 2;
+  for (const bool is_west : {true, false})
+    for (const bool is_known : {true, false}) {
+      const fs::path base = build(scansOf({streetOf(is_west)}), "base.clx");
+      const fs::path lender = build(scansOf({streetOf(!is_west)}), "lender.clx");
+      EXPECT_EQ(goneIn(lender), 1U);
+      EXPECT_EQ(freedIn(lender), 2U) << "beside the other map, and farther in";
+      if (!is_known) spoil(lender, false);
+      EXPECT_EQ(mergeMaps({{base}, {lender}}, merged, params, silence()).maps_taken_over, 1U);
+      EXPECT_TRUE(contentOf(merged) == whole) << is_west << is_known;
+      EXPECT_TRUE(areUpToDate(merged)) << is_west << is_known;
+      spoil(lender, true);
+      mergeMaps({{base}, {lender}}, merged, params, silence());
+      EXPECT_EQ(freedIn(merged), is_known ? 2U : 4U) << "those of a lender are taken as they are";
+    }
+}
+
+TEST_F(GoneOnStreets, IsTheSameWhereAMapGrowsInStrips) {
+  const ScanSet west = scansOf({streetOf(true)});
+  for (const bool leaves_later : {false, true}) {
+    const fs::path map = build(leaves_later ? west.only({0, 1, 2}) : west, "grown.clx");
+    EXPECT_EQ(goneIn(map), leaves_later ? 0U : 1U);
+    const ChangeReport report = extendMap(map, scansOf({streetOf(true), streetOf(false)}),
+                                          {.max_window_share = 2, .whole_cluxels = 100}, silence());
+    EXPECT_EQ(report.local_commits, 1U) << "the map grows: what it had is not decided strip by strip";
+    EXPECT_GT(2 * report.tiles_decided, report.tiles) << report.tiles;
+    EXPECT_EQ(goneIn(map), 2U);
+    EXPECT_TRUE(contentOf(map) == whole) << leaves_later;
+  }
+}
+
 }  // namespace
 }  // namespace cluxel::mapping

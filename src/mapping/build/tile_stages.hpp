@@ -60,6 +60,11 @@ class TileStages {
   void noteEven(const perception::TileSet& kept, const perception::TileSet& changed);
   /// The tiles of which an output changed since the last call of this function.
   perception::TileSet takeChangedOutputs() { return std::exchange(changed_outputs_, {}); }
+  /// Those of `changed` count as such, and other tiles in `kept` no longer.
+  void noteOutputs(const perception::TileSet& kept, const perception::TileSet& changed) {
+    for (const perception::TileKey& tile : kept) changed_outputs_.erase(tile);
+    changed_outputs_.insert(changed.begin(), changed.end());
+  }
   /// Gives outputs of many tiles back; those of few are likely to be read again soon.
   void dropIfMany() {
     constexpr std::size_t kFew = 400;

@@ -196,7 +196,7 @@ void LentDecisions::lendStatements() {
 }
 
 void LentDecisions::noteChanges(OutputChanges& changes, TileStages& stages) const {
-  TileSet same_even;
+  TileSet same_even, same;
   for (const TileKey& tile : lent_) {
     if (haveSameOutput(transaction_, lender_, perception::Stage::Even, tile)) same_even.insert(tile);
     const std::string_view former = requiredBlock(lender_, tables::kSummaries, tile);
@@ -204,10 +204,13 @@ void LentDecisions::noteChanges(OutputChanges& changes, TileStages& stages) cons
       changes.former_summaries.erase(tile);
     else
       changes.former_summaries.insert_or_assign(tile, std::string(former));
-    if (haveSameOutputs(transaction_, lender_, tile)) changes.tiles.erase(tile);
+    if (!haveSameOutputs(transaction_, lender_, tile)) continue;
+    changes.tiles.erase(tile);
+    same.insert(tile);
   }
   changes.tiles.insert(border_.begin(), border_.end());
   stages.noteEven(same_even, border_);
+  stages.noteOutputs(same, border_);  // freed tiles that were lent follow from the same but along the border
 }
 
 void LentDecisions::takeBack() {
