@@ -25,7 +25,9 @@ bool NewestMap::isKept() {
 bool NewestMap::isNewest() {
   try {
     return isKept();
-  } catch (const rdf::LockFileOutdated&) {  // it is closed now, and LMDB finds the newest commit when it opens a map
+  } catch (const rdf::LockFileOutdated&) {
+    // LMDB finds the newest commit when it opens a map. This has closed it; where other readers of the process have it
+    // open, the second attempt fails, too, until they end.
     return isKept();
   }
 }
