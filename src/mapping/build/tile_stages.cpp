@@ -314,7 +314,6 @@ void TileStages::hold(const rdf::ReadTransaction& transaction, const TileSet& ti
 void TileStages::loadPoints(const rdf::ReadTransaction& transaction) {
   loadPoints(transaction, storedTiles(transaction));
 }
-
 void TileStages::loadPoints(const rdf::ReadTransaction& transaction, const TileSet& tiles) {
   RecentScans scans(transaction);
   const EarlierOutputs earlier{earlier_, read_as_before_};
