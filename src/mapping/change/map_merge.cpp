@@ -187,8 +187,8 @@ class Merge {
 
   /// Whether the tiles of a map lie as those of the result, so that they can be taken.
   bool hasTilesOfResult(std::size_t i) const {
-    const MapInputs own = readers_[i].inputs(), result = inputsOfResult();
-    return maps_[i].T_first_map.matrix().isIdentity(0) && own.tileGrid() == result.tileGrid();
+    return maps_[i].T_first_map.matrix().isIdentity(0) &&
+           readers_[i].inputs().tileGrid() == inputsOfResult().tileGrid();
   }
 
   /// Of the maps in the frame of the result, the one with most points: its scans need no new stages.
@@ -325,8 +325,7 @@ class Merge {
 
   void removeBeside() const {
     std::error_code ignored;
-    fs::remove(beside_, ignored);
-    fs::remove(beside_.string() + "-lock", ignored);
+    for (const char* end : {"", "-lock"}) fs::remove(beside_.string() + end, ignored);
   }
 
   const std::vector<MapToMerge>& maps_;
