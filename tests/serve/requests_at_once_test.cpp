@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "mapping/small_campus.hpp"
+#include "rdf/map_iris.hpp"
+#include "rdf/vocabulary.hpp"
 #include "serve/map_service.hpp"
 
 namespace cluxel::serve {
@@ -141,20 +143,41 @@ TEST_F(RequestsAtOnce, AllAnswerAsTheyWouldAlone) {
   }
 }
 
+/// The page of this test tells the classes of the objects, which readers of a commit share.
 TEST_F(RequestsAtOnce, NoneAnswersFromBeforeAnUpdateThatWasReported) {
-  const auto served = service(4);
+  const auto classes = [](const mapping::MapReader& map, const std::string&) {
+    std::string text;
+    for (const rules::SemanticObject& object : map.objects()) text += object.class_iri + "\n";
+    return text;
+  };
+  ServiceOptions options;
+  options.load.running = 4;
+  options.token = kToken;
+  options.page = classes;
+  MapService served({{"map", file}}, DataHome(test::sourceFolder()), options);
   std::atomic<bool> is_over = false;
   std::thread reader([&] {
-    while (!is_over) get(*served, "/tiles/0/0");
+    while (!is_over) get(served, "/objects/%230/explanation"), get(served, "/page");
   });
-  for (int i = 0; i < 5; ++i) {
-    const std::string label = "label " + std::to_string(i);
-    ASSERT_EQ(insert(*served, label).status, 200);
-    const HttpResponse rows = get(*served,
-                                  "/sparql?format=csv&query=SELECT%20%3Fo%20%7B%3Chttps%3A%2F%2Fe.org%2Fa%3E%20"
-                                  "%3Fp%20%3Fo%7D");
-    EXPECT_NE(rows.body.find(label), std::string::npos) << rows.body;
-    served->tidy();
+  std::vector<std::string> things;
+  {
+    const mapping::MapReader map(file);
+    for (const rules::SemanticObject& object : map.objects())
+      if (!map.isClassWide(object.id) && things.size() < 3) things.push_back(rdf::iriOfObject(object.id));
+  }
+  EXPECT_EQ(things.size(), 3U);
+  for (const std::string& thing : things) {
+    const std::string before = get(served, "/page").body;
+    const HttpResponse updated = served.handle(
+        {.method = "POST",
+         .target = "/sparql",
+         .headers = {{"authorization", "Bearer " + kToken}, {"content-type", "application/sparql-update"}},
+         .body = "INSERT DATA { <" + thing + "> a <" + rdf::vocabulary::clx("TrafficLight") + "> }"});
+    EXPECT_EQ(updated.status, 200) << updated.body;
+    const std::string now = get(served, "/page").body;
+    EXPECT_NE(now, before) << "the objects of the commit before";
+    EXPECT_EQ(now, classes(mapping::MapReader(file), ""));
+    served.tidy();
   }
   is_over = true;
   reader.join();
