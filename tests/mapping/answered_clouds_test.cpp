@@ -8,27 +8,12 @@
 #include <cstdlib>
 
 #include "cluxel/error.hpp"
-#include "mapping/small_campus.hpp"
+#include "mapping/street_map.hpp"
 
 namespace cluxel::mapping {
 namespace {
 
-class AnsweredCloudsTest : public ::testing::Test {
- protected:
-  static void SetUpTestSuite() {
-    folder = new ScratchFolder();
-    const SmallCampus campus({.seed = 7, .stops = 5, .size_m = 80, .points_per_stop = 5000, .max_range_m = 25});
-    buildMap(scansOf(campus.files()), shippedInputs(), folder->path() / "street.clx", {}, silence());
-    map = new MapReader(folder->path() / "street.clx");
-  }
-  static void TearDownTestSuite() {
-    delete map;
-    delete folder;
-  }
-
-  static inline ScratchFolder* folder = nullptr;
-  static inline MapReader* map = nullptr;
-};
+class AnsweredCloudsTest : public StreetMap {};
 
 TEST_F(AnsweredCloudsTest, HaveTheAnswersOfTheWholeMapInItsOrderWhateverTheRegions) {
   const std::vector<Cloud> clouds = map->clouds();

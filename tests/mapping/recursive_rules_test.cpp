@@ -82,8 +82,9 @@ TEST(RecursiveRules, ARingOfDerivedFactsFallsWithItsOnlySupport) {
   EXPECT_EQ(facts.count("is"), 4U);
 }
 
-/// a has b follows by the rule from a has c, and that by transitivity from a has b. What the rule never reads, that a
-/// has b, also follows from what the rule derives of the seed: the only support.
+/// The rule derives "a has b" from "a has c". The closure derives "a has c" from "a has b", because "has" is
+/// transitive. So the two facts support each other, and only the seed supports both. The rule never reads "a has b"
+/// itself.
 TEST(RecursiveRules, ARingThroughTheClosureFallsWithItsOnlySupport) {
   FewFacts facts({rule("ring.rq",
                        "CONSTRUCT { ?x ?p ?y } WHERE { { ?k clx:seed ?x . ?k clx:to ?y BIND(clx:owns AS ?p) } UNION "

@@ -8,24 +8,13 @@
 #include <utility>
 
 #include "mapping/facts/object_geometry.hpp"
-#include "mapping/small_campus.hpp"
+#include "mapping/street_map.hpp"
 
 namespace cluxel::mapping {
 namespace {
 
-class WholeObjectsTest : public ::testing::Test {
+class WholeObjectsTest : public StreetMap {
  protected:
-  static void SetUpTestSuite() {
-    folder = new ScratchFolder();
-    const SmallCampus campus({.seed = 7, .stops = 5, .size_m = 80, .points_per_stop = 5000, .max_range_m = 25});
-    buildMap(scansOf(campus.files()), shippedInputs(), folder->path() / "street.clx", {}, silence());
-    map = new MapReader(folder->path() / "street.clx");
-  }
-  static void TearDownTestSuite() {
-    delete map;
-    delete folder;
-  }
-
   /// The seeds of some cluxels, which name them whatever their numbers.
   static std::vector<std::pair<ContentHash, std::uint32_t>> seedsOf(const perception::SceneCluxels& cluxels,
                                                                     const std::vector<std::uint32_t>& members) {
@@ -53,9 +42,6 @@ class WholeObjectsTest : public ::testing::Test {
     EXPECT_EQ(geometry.top_m, of_scene.top_m);
     EXPECT_EQ(geometry.box.yaw_rad, of_scene.box.yaw_rad);
   }
-
-  static inline ScratchFolder* folder = nullptr;
-  static inline MapReader* map = nullptr;
 };
 
 TEST_F(WholeObjectsTest, AreThoseOfTheSceneWhateverTheRegions) {
