@@ -74,6 +74,13 @@ std::optional<MapPart> partOfMap(const rdf::ReadTransaction& transaction, TileSt
   return part;
 }
 
+std::size_t cluxelsIn(const rdf::ReadTransaction& transaction, const perception::TileSet& tiles) {
+  std::size_t cluxels = 0;
+  for (const perception::TileKey& tile : tiles)
+    if (const std::optional<TileLayer> layer = storedLayer(transaction, tile)) cluxels += layer->size();
+  return cluxels;
+}
+
 ThingPlace placeOfObject(const rdf::ReadTransaction& transaction, const ContentHash& object) {
   ThingPlace place{{}, tilesOfObject(transaction, object)};
   for (const perception::TileKey& tile : place.tiles)

@@ -27,6 +27,15 @@ struct MapPart {
 std::optional<MapPart> partOfMap(const rdf::ReadTransaction& transaction, TileStages& stages,
                                  const perception::TileSet& tiles, double reach_m);
 
+/// How large the part around a thing is to be.
+struct PartSize {
+  int rings = 1;      ///< of tiles around those of the thing
+  double near_m = 0;  ///< with the tiles of the objects within this distance (tilesOfNearObjects())
+  std::optional<std::size_t> most_cluxels = std::nullopt;  ///< no part when there are more
+};
+/// What the layers of the tiles tell. Cost: reads these.
+std::size_t cluxelsIn(const rdf::ReadTransaction& transaction, const perception::TileSet& tiles);
+
 /// Where an object, or a primitive, is. Cost: of an object that of its tiles; of a primitive some microseconds a tile
 /// of the map.
 struct ThingPlace {

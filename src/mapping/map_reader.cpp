@@ -86,17 +86,32 @@ struct MapReader::Impl {
     });
   }
 
-  std::optional<MapPart> partAroundThing(const ThingPlace& thing, int rings, double near_m) {
-    const perception::TileSet tiles = tilesOfPrimitives(transaction, thing);
-    std::optional<MapPart> part = partAround(tiles, rings, tilesOfNearObjects(transaction, thing, tiles, near_m));
-    return part ? std::move(part) : partAround(tiles, rings, {});  // the near objects may be too much of a small map
+  std::optional<MapPart> partAroundThing(const ThingPlace& thing, const PartSize& size) {
+    const perception::TileSet own = tilesOfPrimitives(transaction, thing);
+    const perception::TileSet tiles = withRings(own, size.rings);
+    const perception::TileSet with_near =
+        perception::unionOf(tiles, tilesOfNearObjects(transaction, thing, own, size.near_m));
+    if (isLarger(with_near, size)) return std::nullopt;
+    std::optional<MapPart> part = partIn(with_near);
+    return part ? std::move(part) : partIn(tiles);  // the near objects may be too much of a small map
   }
 
-  /// Some tiles with rings around them, and `more` without.
-  std::optional<MapPart> partAround(perception::TileSet tiles, int rings, const perception::TileSet& more) {
+  std::optional<MapPart> partAroundTile(const perception::TileKey& tile, const PartSize& size) {
+    const perception::TileSet tiles = withRings({tile}, size.rings);
+    return isLarger(tiles, size) ? std::nullopt : partIn(tiles);
+  }
+
+  perception::TileSet withRings(perception::TileSet tiles, int rings) const {
     const perception::TileSet map = storedTiles(transaction);
     for (int ring = 0; ring < rings; ++ring) tiles = perception::withRing(tiles, map);
-    tiles.insert(more.begin(), more.end());
+    return tiles;
+  }
+
+  bool isLarger(const perception::TileSet& tiles, const PartSize& size) const {
+    return size.most_cluxels && cluxelsIn(transaction, tiles) > *size.most_cluxels;
+  }
+
+  std::optional<MapPart> partIn(const perception::TileSet& tiles) {
     TileStages here(readModel(), readInputs().params);
     return partOfMap(transaction, here, tiles, 0);
   }
@@ -154,15 +169,15 @@ const std::vector<ContentHash>& MapReader::primitiveIds() const {
   return impl_->layers->primitive_ids.get([&] { return storedPrimitives(impl_->transaction); });
 }
 
-std::optional<MapPart> MapReader::partAroundObject(const ContentHash& object, int rings, double near_m) const {
-  return impl_->partAroundThing(placeOfObject(object), rings, near_m);
+std::optional<MapPart> MapReader::partAroundObject(const ContentHash& object, const PartSize& size) const {
+  return impl_->partAroundThing(placeOfObject(object), size);
 }
-std::optional<MapPart> MapReader::partAroundPrimitive(const ContentHash& primitive, int rings, double near_m) const {
-  return impl_->partAroundThing(placeOfPrimitive(primitive), rings, near_m);
+std::optional<MapPart> MapReader::partAroundPrimitive(const ContentHash& primitive, const PartSize& size) const {
+  return impl_->partAroundThing(placeOfPrimitive(primitive), size);
 }
 
-std::optional<MapPart> MapReader::partAroundTile(const perception::TileKey& tile, int rings) const {
-  return impl_->partAround({tile}, rings, {});
+std::optional<MapPart> MapReader::partAroundTile(const perception::TileKey& tile, const PartSize& size) const {
+  return impl_->partAroundTile(tile, size);
 }
 ThingPlace MapReader::placeOfObject(const ContentHash& object) const {
   return mapping::placeOfObject(impl_->transaction, object);

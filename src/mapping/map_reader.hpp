@@ -27,6 +27,7 @@ namespace cluxel::mapping {
 class TileStages;
 struct WayGraph;
 struct LayersAround;
+struct PartSize;
 struct MapPart;
 struct ThingPlace;
 struct PrimitivePlace;
@@ -67,11 +68,12 @@ class MapReader {
   /// The ids of objects(), and of the scene's primitives, ascending. Cost: some microseconds an object, or a tile.
   const std::vector<ContentHash>& objectIds() const;
   const std::vector<ContentHash>& primitiveIds() const;
-  /// The part of the map `rings` tiles around all primitives of an object, or around one, with the tiles of the objects
-  /// within `near_m` of it (tilesOfNearObjects()), unless these are most of the map. Absent as for partOfMap().
-  std::optional<MapPart> partAroundObject(const ContentHash& object, int rings, double near_m) const;
-  std::optional<MapPart> partAroundPrimitive(const ContentHash& primitive, int rings, double near_m) const;
-  std::optional<MapPart> partAroundTile(const perception::TileKey& tile, int rings) const;
+  /// The part of the map around all primitives of an object, around one, or around a tile, for which `near_m` does not
+  /// count. Without the near objects when these are most of the map. Absent as for partOfMap(), and when the part would
+  /// be larger than `size` allows.
+  std::optional<MapPart> partAroundObject(const ContentHash& object, const PartSize& size) const;
+  std::optional<MapPart> partAroundPrimitive(const ContentHash& primitive, const PartSize& size) const;
+  std::optional<MapPart> partAroundTile(const perception::TileKey& tile, const PartSize& size) const;
   /// As the functions of mapping/map_part.
   ThingPlace placeOfObject(const ContentHash& object) const;
   ThingPlace placeOfPrimitive(const ContentHash& primitive) const;

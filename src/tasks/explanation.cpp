@@ -64,11 +64,11 @@ Explainable explainableOf(const mapping::MapReader& map, const NamedThing& named
   return {named.object, named.primitive, {}};
 }
 
-std::optional<mapping::MapPart> partAround(const mapping::MapReader& map, const Explainable& what, int rings) {
-  constexpr double near_m = rules::kSameOwnersWithin_m;  // a cut object there would be decided otherwise
-  auto part = what.tile        ? map.partAroundTile(*what.tile, rings)
-              : what.primitive ? map.partAroundPrimitive(*what.primitive, rings, near_m)
-                               : map.partAroundObject(*what.object, rings, near_m);
+std::optional<mapping::MapPart> partAround(const mapping::MapReader& map, const Explainable& what,
+                                           const mapping::PartSize& size) {
+  auto part = what.tile        ? map.partAroundTile(*what.tile, size)
+              : what.primitive ? map.partAroundPrimitive(*what.primitive, size)
+                               : map.partAroundObject(*what.object, size);
   return part ? std::optional(byRules(map, *std::move(part))) : std::nullopt;
 }
 
@@ -90,16 +90,17 @@ std::optional<rules::PartRun> runAround(const mapping::MapReader& map, const Exp
                                         const rules::RuleSet& rules) {
   if (rules.asks_map) return std::nullopt;
   struct Around {
-    int rings;
+    mapping::PartSize size;
     std::vector<double> margins_m;  ///< smaller ones were tried with fewer rings
   };
+  constexpr double near_m = rules::kSameOwnersWithin_m;  // a cut object there would be decided otherwise
+  // A larger part mostly depends on what lies around it. With the next ring it costs little more.
+  constexpr std::size_t kFewCluxels = 150'000;
   rules::KnownSplits splits = mapping::storedSplitsIfFew(map.transaction());
-  for (const Around& around : {Around{1, {kAll}}, Around{2, {kAll}}, Around{3, {30, kAll}}}) {
-    std::optional<mapping::MapPart> part = partAround(map, what, around.rings);
-    if (!part) break;
-    // A part that large mostly depends on what lies around it. With the next ring it costs little more.
-    constexpr std::size_t kLargePart = 150'000;  // cluxels
-    if (around.rings == 1 && part->scene.cluxels.size() > kLargePart) continue;
+  for (const Around& around :
+       {Around{{1, near_m, kFewCluxels}, {kAll}}, Around{{2, near_m}, {kAll}}, Around{{3, near_m}, {30, kAll}}}) {
+    std::optional<mapping::MapPart> part = partAround(map, what, around.size);
+    if (!part) continue;
     const auto primitives = primitivesIn(part->scene, part->objects, what);
     const auto scene = std::make_shared<const perception::Scene>(std::move(part->scene));
     if (auto run = runInPart(scene, rules, {part->traces, part->objects, &splits}, primitives, {around.margins_m, 1}))

@@ -47,7 +47,7 @@ TEST(MapPart, HoldsWhatTheMapSaysOfItsTiles) {
   std::size_t parts = 0, primitives = 0;
   for (std::size_t i = 0; i < map.objects().size(); i += 5) {
     const SemanticObject& object = map.objects()[i];
-    const auto part = map.partAroundObject(object.id, 1, 5);
+    const auto part = map.partAroundObject(object.id, {1, 5});
     if (!part) continue;
     ++parts;
     EXPECT_LT(part->scene.cluxels.size(), map.scene().cluxels.size());
@@ -69,6 +69,23 @@ TEST(MapPart, HoldsWhatTheMapSaysOfItsTiles) {
   EXPECT_GE(primitives, 100U);
 }
 
+TEST(MapPart, IsAbsentWhenItWouldBeTooLarge) {
+  const SmallCampus campus({.seed = 5, .stops = 12, .size_m = 150, .points_per_stop = 7000, .max_range_m = 25});
+  const ScratchFolder folder;
+  buildMap(scansOf(campus.files()), shippedInputs(), folder.path() / "street.clx", {}, silence());
+  const MapReader map(folder.path() / "street.clx");
+  std::size_t parts = 0;
+  for (const SemanticObject& object : map.objects()) {
+    const auto part = map.isClassWide(object.id) ? std::nullopt : map.partAroundObject(object.id, {1, 5});
+    if (!part) continue;
+    ++parts;
+    const std::size_t cluxels = part->scene.cluxels.size();
+    EXPECT_TRUE(map.partAroundObject(object.id, {1, 5, cluxels})) << object.id.hex();
+    EXPECT_FALSE(map.partAroundObject(object.id, {1, 5, cluxels - 1})) << object.id.hex();
+  }
+  EXPECT_GE(parts, 10U);
+}
+
 /// Trees share crowns that go on beyond the tiles of one tree. A run over a cut crown would decide otherwise.
 TEST(MapPart, CutsNoPrimitiveOfTheObjectThatItIsAround) {
   const SmallCampus campus({.seed = 5, .stops = 12, .size_m = 150, .points_per_stop = 20000, .max_range_m = 25});
@@ -77,7 +94,7 @@ TEST(MapPart, CutsNoPrimitiveOfTheObjectThatItIsAround) {
   const MapReader map(folder.path() / "street.clx");
   std::size_t parts = 0;
   for (const SemanticObject& object : map.objects()) {
-    const auto part = map.isClassWide(object.id) ? std::nullopt : map.partAroundObject(object.id, 1, 5);
+    const auto part = map.isClassWide(object.id) ? std::nullopt : map.partAroundObject(object.id, {1, 5});
     if (!part) continue;
     ++parts;
     std::set<ContentHash> whole;
@@ -122,7 +139,7 @@ TEST(MapPart, HoldsAllOfTheObjectsThatAreNear) {
   for (std::size_t i = 0; i < map.objects().size(); i += 2) {
     const SemanticObject& object = map.objects()[i];
     if (object.is_class_wide) continue;
-    const auto part = map.partAroundObject(object.id, 1, 5.1), ring = map.partAroundObject(object.id, 1, -1);
+    const auto part = map.partAroundObject(object.id, {1, 5.1}), ring = map.partAroundObject(object.id, {1, -1});
     if (!part || !ring) continue;
     const std::vector<const SemanticObject*> near = near_objects(object);
     TileSet tiles;
@@ -156,7 +173,7 @@ TEST(MapPart, NamesObjectsAndPrimitivesAsTheMapDoes) {
   for (std::size_t i = 0; i < map.primitiveIds().size(); ++i)
     EXPECT_EQ(map.primitiveIds()[i], map.scene().primitives[i].id);
   EXPECT_EQ(map.summary().objects, map.objects().size());
-  EXPECT_FALSE(map.partAroundObject(ContentHash{}, 1, 5)) << "there is no such object";
+  EXPECT_FALSE(map.partAroundObject(ContentHash{}, {1, 5})) << "there is no such object";
 }
 
 }  // namespace

@@ -108,7 +108,7 @@ TEST_F(ExplanationOfALongMap, OfAnObjectThroughoutTheMapReadsSomeTilesToo) {
       std::find_if(objects.begin(), objects.end(), [](const SemanticObject& object) { return object.is_class_wide; });
   ASSERT_NE(ground, objects.end());
   const auto sample = map->samplePrimitiveOf(ground->id);
-  ASSERT_TRUE(sample && map->partAroundTile(sample->tile, 1));
+  ASSERT_TRUE(sample && map->partAroundTile(sample->tile, {}));
   const auto& primitives = map->scene().primitives;
   const auto at = std::find_if(primitives.begin(), primitives.end(),
                                [&](const Primitive& primitive) { return primitive.id == sample->primitive; });
@@ -134,7 +134,7 @@ TEST_F(ExplanationOfALongMap, ReadsSomeTilesAndSaysWhatTheWholeMapSays) {
     ASSERT_TRUE(whole);
     const std::string expected = withoutFolder(textOf(*whole, rules, map->scene()), inputs);
     EXPECT_TRUE(explainThing(*map, object.id.hex(), false).ends_with(expected)) << "object " << i;
-    if (map->partAroundObject(object.id, 1, 5)) ++in_part;
+    if (map->partAroundObject(object.id, {1, 5})) ++in_part;
   }
   EXPECT_GE(in_part, 5U);
 }
