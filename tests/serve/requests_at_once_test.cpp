@@ -183,5 +183,46 @@ TEST_F(RequestsAtOnce, NoneAnswersFromBeforeAnUpdateThatWasReported) {
   reader.join();
 }
 
+/// A commit says of all objects that they are gone, or of none.
+TEST_F(RequestsAtOnce, AListOfObjectsIsOfOneCommit) {
+  const auto served = service(4);
+  std::vector<Quad> gone;
+  {
+    const mapping::MapReader map(file);
+    for (const ContentHash& object : map.objectIds())
+      gone.push_back({Term::iri(rdf::iriOfObject(object)), Term::iri(rdf::vocabulary::clx("seenThrough")),
+                      Term::literal("2026-01-01T00:00:00Z", rdf::vocabulary::xsd("dateTime")),
+                      Term::iri(std::string(rdf::vocabulary::kGraphObserved))});
+  }
+  ASSERT_GT(gone.size(), 5U);
+  std::atomic<bool> is_over = false;
+  std::atomic<int> mixed = 0, lists = 0;
+  std::thread reader([&] {
+    while (!is_over) {
+      const std::string list = get(*served, "/objects").body;
+      std::size_t count = 0;
+      for (std::size_t at = list.find("seenThrough"); at != std::string::npos; at = list.find("seenThrough", at + 1))
+        ++count;
+      if (count != 0 && count != gone.size()) ++mixed;
+      ++lists;
+    }
+  });
+  const auto environment = rdf::Environment::open(file, rdf::OpenMode::ReadWrite);
+  for (int round = 0; round < 120 || lists < 20; ++round) {
+    rdf::WriteTransaction transaction = environment->write();
+    rdf::QuadWriter writer(transaction);
+    for (const Quad& quad : gone) {
+      const rdf::QuadIds ids{writer.intern(quad.subject), writer.intern(quad.predicate), writer.intern(quad.object),
+                             writer.intern(quad.graph)};
+      round % 2 == 0 ? writer.add(ids) : writer.remove(ids);
+    }
+    writer.flush();
+    transaction.commit();
+  }
+  is_over = true;
+  reader.join();
+  EXPECT_EQ(mixed, 0);
+}
+
 }  // namespace
 }  // namespace cluxel::serve

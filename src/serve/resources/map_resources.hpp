@@ -24,7 +24,7 @@ struct ResourceRequest {
 std::string mapSummaryJson(const ServedMap& map);
 
 /// Parameters: class, bbox (minX,minY,maxX,maxY, or with heights minX,minY,minZ,maxX,maxY,maxZ), limit, offset.
-HttpResponse answerObjects(const ServedMap& map, const ResourceRequest& asked);
+HttpResponse answerObjects(ServedMap& map, const ResourceRequest& asked);
 /// `id`: the object's hash, at least four of its first digits, or its number as "#17".
 HttpResponse answerObject(const ServedMap& map, const ResourceRequest& asked, const std::string& id);
 /// JSON, or prose when the client wants text/plain.

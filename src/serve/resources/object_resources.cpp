@@ -89,10 +89,11 @@ Box boxOf(const Parameters& parameters) {
   return box;
 }
 
-std::vector<const Object*> selected(const ServedMap& map, const ObjectTable& table, const Parameters& parameters) {
+std::vector<const Object*> selected(const mapping::MapReader& map, const ObjectTable& table,
+                                    const Parameters& parameters) {
   const Box box = boxOf(parameters);
   const auto class_name = valueOf(parameters, "class");
-  const auto namespaces = [&] { return tasks::namespacesOf(mapping::MapReader(map.file()).inputs()); };
+  const auto namespaces = [&] { return tasks::namespacesOf(map.inputs()); };
   const std::string class_iri = class_name ? tasks::classNamed(table.ontology, *class_name, namespaces) : "";
   std::vector<const Object*> objects;
   for (const Object& object : table.objects)
@@ -127,27 +128,31 @@ std::string csvOf(const PointCloud& points, std::uint64_t max_bytes) {
 
 }  // namespace
 
-HttpResponse answerObjects(const ServedMap& map, const ResourceRequest& asked) {
+HttpResponse answerObjects(ServedMap& map, const ResourceRequest& asked) {
   constexpr std::size_t kDefaultPage = 100, kLargestPage = 10'000;
   const Parameters& parameters = asked.target.parameters;
   requireKnown(parameters, {"class", "bbox", "limit", "offset"});
   const std::size_t limit = std::min(wholeNumberOf(parameters, "limit").value_or(kDefaultPage), kLargestPage);
   const std::size_t offset = wholeNumberOf(parameters, "offset").value_or(0);
-  const auto table = objectsOf(map.quads());
-  const std::vector<const Object*> objects = selected(map, *table, parameters);
-  ObjectJson json{{"total", objects.size()}, {"offset", offset}, {"objects", ObjectJson::array()}};
-  for (std::size_t i = offset; i < objects.size() && i - offset < limit; ++i)
-    json["objects"].push_back(objectJson(*objects[i], map.quads(), table->class_names));
-  if (limit > 0 && offset < objects.size() && objects.size() - offset > limit) json["nextOffset"] = offset + limit;
+  ObjectJson json;
+  map.withReader([&](const mapping::MapReader& reader) {  // one commit for all of the answer
+    const auto table = objectsOf(reader.quads());
+    const std::vector<const Object*> objects = selected(reader, *table, parameters);
+    json = {{"total", objects.size()}, {"offset", offset}, {"objects", ObjectJson::array()}};
+    for (std::size_t i = offset; i < objects.size() && i - offset < limit; ++i)
+      json["objects"].push_back(objectJson(*objects[i], reader.quads(), table->class_names));
+    if (limit > 0 && offset < objects.size() && objects.size() - offset > limit) json["nextOffset"] = offset + limit;
+  });
   return jsonResponse(json, asked.limits);
 }
 
 HttpResponse answerObject(const ServedMap& map, const ResourceRequest& asked, const std::string& id) {
   requireKnown(asked.target.parameters, {});
-  const auto table = objectsOf(map.quads());
-  const Object& object = objectNamed(*table, map.quads(), id);
-  ObjectJson json = objectJson(object, map.quads(), table->class_names);
-  const auto things = mapping::storedThings(map.quads());
+  const rdf::QuadReader snapshot = map.quads();
+  const auto table = objectsOf(snapshot);
+  const Object& object = objectNamed(*table, snapshot, id);
+  ObjectJson json = objectJson(object, snapshot, table->class_names);
+  const auto things = mapping::storedThings(snapshot);
   json["thing"] = thingOf(things, ContentHash::fromHex(hashOf(object.iri))).iri;
   return jsonResponse(json, asked.limits);
 }
