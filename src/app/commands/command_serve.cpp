@@ -187,16 +187,14 @@ ExitCode serveMaps(const ServeArguments& arguments, Session& session) {
       httpOptions(arguments), [&service](const serve::HttpRequest& request) { return service.handle(request); },
       [&lines](const serve::AccessEntry& entry) { lines.write(entry); });
   announce(server, arguments, session);
-  const std::future<void> served = std::async(std::launch::async, [&server] { server.run(); });
-  const auto hasEnded = [&served](int wait_ms) {
-    return served.wait_for(std::chrono::milliseconds(wait_ms)) == std::future_status::ready;
-  };
   const Housekeeper housekeeper(service);
-  while (!signals->arrived(std::chrono::seconds(1)) && !hasEnded(0)) {
+  std::future<void> served = std::async(std::launch::async, [&server] { server.run(); });
+  const auto hasEnded = [&served] { return served.wait_for(std::chrono::seconds(0)) == std::future_status::ready; };
+  while (!signals->arrived(std::chrono::seconds(1)) && !hasEnded()) {
   }
   signals.reset();
-  do server.stop();
-  while (!hasEnded(50));
+  server.stop();
+  served.get();  // throws what ended the server before
   return ExitCode::Done;
 }
 

@@ -2,6 +2,7 @@
 // Runs cpp-httplib's parser on streams of its own, and hands requests to the handler as values.
 #include "serve/http/http_server.hpp"
 
+#include <fcntl.h>
 #include <sys/eventfd.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -9,7 +10,6 @@
 #include <algorithm>
 #include <atomic>
 #include <memory>
-#include <mutex>
 
 #include "base/ascii.hpp"
 #include "cluxel/error.hpp"
@@ -103,7 +103,7 @@ void writeRefusal(HttpStream& stream, const std::string& status, const std::stri
 struct HttpServer::Impl : httplib::Server {
   Impl(const HttpOptions& given, HttpHandler to_handle, AccessLog to_log)
       : options(given), handler(std::move(to_handle)), log(std::move(to_log)), stop_event(::eventfd(0, EFD_CLOEXEC)) {
-    new_task_queue = [this] { return new HttpThreads(options.max_connections); };
+    new_task_queue = [this] { return new HttpThreads(options.max_connections, [this] { endConnections(); }); };
     set_payload_max_length(options.max_body_bytes);
     set_keep_alive_max_count(kKeepAliveRequests);
     set_keep_alive_timeout(std::chrono::duration_cast<std::chrono::seconds>(options.idle_time).count());
@@ -119,7 +119,10 @@ struct HttpServer::Impl : httplib::Server {
     });
     bind();
   }
-  ~Impl() override { ::close(stop_event); }
+  ~Impl() override {
+    ::close(listener);
+    ::close(stop_event);
+  }
 
   void bind() {
     port = options.port == 0 ? bind_to_any_port(options.host) : options.port;
@@ -130,6 +133,8 @@ struct HttpServer::Impl : httplib::Server {
                                                   ": another program uses it, or the address is not of this machine; "
                                                   "choose another port");
     ::listen(svr_sock_, kBacklog);  // cpp-httplib's queue of five connections is short
+    listener = ::fcntl(svr_sock_, F_DUPFD_CLOEXEC, 0);
+    if (listener < 0) throw Error(ErrorKind::InvalidArgument, "the server cannot listen: too many files are open");
   }
 
   static HandlerResponse refuse(httplib::Response& out, int status, const std::string& message) {
@@ -206,7 +211,7 @@ struct HttpServer::Impl : httplib::Server {
   void serveRequests(HttpStream& stream) {
     while (stream.awaitRequest()) {
       bool is_closed = false;
-      const bool is_last = is_stopping;
+      const bool is_last = is_ending;
       const auto begin_body = [&stream](httplib::Request& request) {
         request.ranges.clear();  // ranges of one answer could ask for it many times over
         stream.beginBody();
@@ -226,10 +231,15 @@ struct HttpServer::Impl : httplib::Server {
     record(unread, sent);
   }
 
-  /// cpp-httplib's stop() may be called once, and only while it listens.
-  void stopListening() {
-    const std::lock_guard lock(stop_mutex);
-    if (is_running() && svr_sock_ != INVALID_SOCKET) httplib::Server::stop();
+  /// Not by cpp-httplib's stop(): it gives up large bodies that are not yet sent, and closes a socket that accept() may
+  /// still use. accept() fails on a socket that is shut down, now or when it is called.
+  void stopListening() const { ::shutdown(listener, SHUT_RDWR); }
+
+  /// Connections end when their request is answered, and idle ones at once.
+  void endConnections() {
+    is_ending = true;
+    const std::uint64_t one = 1;
+    [[maybe_unused]] const ssize_t written = ::write(stop_event, &one, sizeof one);
   }
 
   /// A connection that ends is told once, whoever ends it: the client, cpp-httplib or endAfter(); nothing keeps it
@@ -252,9 +262,10 @@ struct HttpServer::Impl : httplib::Server {
   HttpHandler handler;
   AccessLog log;
   int stop_event;
+  int listener = -1;  ///< the socket of cpp-httplib under a number that cpp-httplib does not close
   int port = 0;
-  std::atomic<bool> is_stopping = false;
-  std::mutex stop_mutex;
+  std::atomic<bool> is_ending = false;    ///< no request is read any more
+  std::atomic<bool> is_stopping = false;  ///< by stop()
 };
 
 HttpServer::HttpServer(const HttpOptions& options, HttpHandler handler, AccessLog log)
@@ -266,13 +277,17 @@ int HttpServer::port() const {
 }
 
 void HttpServer::run() {
-  if (!impl_->is_stopping) impl_->listen_after_bind();
+  impl_->listen_after_bind();
+  if (impl_->is_stopping) return;
+  impl_->stopListening();  // clients need not wait for an answer
+  throw Error(ErrorKind::StoreUnavailable,
+              "the server can take no more connections: the system refused one, perhaps for want of memory or of open "
+              "files; what was running is answered; start it again");
 }
 
 void HttpServer::stop() {
   impl_->is_stopping = true;
-  const std::uint64_t one = 1;
-  [[maybe_unused]] const ssize_t written = ::write(impl_->stop_event, &one, sizeof one);
+  impl_->endConnections();
   impl_->stopListening();
 }
 

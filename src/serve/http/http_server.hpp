@@ -35,10 +35,10 @@ class HttpServer {
   ~HttpServer();
 
   int port() const;
-  /// Returns after stop(), when the requests in flight are answered.
+  /// Returns after stop(), when the requests in flight are answered. Throws Error (StoreUnavailable) when the system
+  /// refuses further connections, when those in flight are answered. May be called once.
   void run();
-  /// Takes no more connections, and ends idle ones. May be called from any thread, and again; a call before run() has
-  /// begun to listen must be repeated.
+  /// Takes no more connections, and ends idle ones. May be called from any thread, before run(), and again.
   void stop();
 
  private:

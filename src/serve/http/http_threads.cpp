@@ -2,6 +2,8 @@
 // A pool that grows with the connections.
 #include "serve/http/http_threads.hpp"
 
+#include <system_error>
+
 namespace cluxel::serve {
 
 namespace {
@@ -15,9 +17,8 @@ bool HttpThreads::isRefused() {
 void HttpThreads::enqueue(std::function<void()> serve) {
   {
     const std::lock_guard lock(mutex_);
-    if (busy_ + waiting_.size() < max_threads_) {
+    if (busy_ + waiting_.size() < max_threads_ && hasFreeThread()) {
       waiting_.push_back(std::move(serve));
-      if (busy_ + waiting_.size() > threads_.size()) threads_.emplace_back([this] { work(); });
       changed_.notify_one();
       return;
     }
@@ -25,6 +26,17 @@ void HttpThreads::enqueue(std::function<void()> serve) {
   is_refused = true;
   serve();
   is_refused = false;
+}
+
+/// Under the lock. Starts a thread when all have something to do.
+bool HttpThreads::hasFreeThread() {
+  if (busy_ + waiting_.size() < threads_.size()) return true;
+  try {
+    threads_.emplace_back([this] { work(); });
+    return true;
+  } catch (const std::system_error&) {  // the system has no more threads
+    return false;
+  }
 }
 
 void HttpThreads::work() {
@@ -43,6 +55,7 @@ void HttpThreads::work() {
 }
 
 void HttpThreads::shutdown() {
+  end_();
   {
     const std::lock_guard lock(mutex_);
     is_ending_ = true;

@@ -10,15 +10,18 @@
 #include <list>
 #include <mutex>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace cluxel::serve {
 
 class HttpThreads : public httplib::TaskQueue {
  public:
-  explicit HttpThreads(std::size_t max_threads) : max_threads_(max_threads) {}
+  /// `end` is called when no connection comes any more, before those that are open are waited for.
+  HttpThreads(std::size_t max_threads, std::function<void()> end) : max_threads_(max_threads), end_(std::move(end)) {}
 
-  /// Beyond the limit, `serve` runs at once in the calling thread, where isRefused() is then true.
+  /// Beyond the limit, and where the system has no more threads, `serve` runs at once in the calling thread, where
+  /// isRefused() is then true.
   void enqueue(std::function<void()> serve) override;
   /// Waits for all connections.
   void shutdown() override;
@@ -27,9 +30,11 @@ class HttpThreads : public httplib::TaskQueue {
   static bool isRefused();
 
  private:
+  bool hasFreeThread();
   void work();
 
   std::size_t max_threads_, busy_ = 0;
+  std::function<void()> end_;
   std::mutex mutex_;
   std::condition_variable changed_;
   bool is_ending_ = false;
