@@ -18,6 +18,10 @@ import { AnswerTable, RowObjects } from './table';
 const OWNERS = `PREFIX clx: <https://w3id.org/cluxel/ontology#> PREFIX sosa: <http://www.w3.org/ns/sosa/>
 SELECT ?part ?object { ?part clx:partOf|clx:primitiveOf|sosa:hasFeatureOfInterest ?object }`;
 const HISTORY = 'https://w3id.org/cluxel/graph/history';
+const DOUBTS = {
+  times: 'Times as text may be written otherwise than in the map, where some have no six digits after the point: cluxel query tells them as they are written.',
+  numbers: 'Numbers as text may be written otherwise than in the map, such as 2 for 2.0: cluxel query tells them as they are written.',
+};
 const RANKED = /\bORDER\s+BY\b/i;
 
 export class AskPanel {
@@ -161,8 +165,8 @@ export class AskPanel {
     queueMicrotask(() => this.status.classList.add('fault'));
   }
 
-  /** Warnings about names that are not in the page, and variables without a value. */
-  private warningsOf({ unknown, unbound }: Answer): string[] {
+  /** Warnings about names that are not in the page, variables without a value, and texts that the engine writes otherwise. */
+  private warningsOf({ unknown, unbound, doubts }: Answer): string[] {
     const { classes, values } = this.model;
     const known = [...classes.keys(), ...values.properties.map((property) => property.iri)].map(shortened);
     const valueless = unbound.map((name) => `?${name} has no value: no pattern binds it.`);
@@ -170,7 +174,7 @@ export class AskPanel {
       if (iri === HISTORY) return 'The graph of the history is not in the page: cluxel query has it.';
       const name = shortened(iri), near = what === 'graph' ? undefined : nearest(name, known);
       return `The page has no ${what === 'name' ? '' : `${what} `}${name}.${near ? ` Did you mean ${near}?` : ''}`;
-    }).concat(valueless);
+    }).concat(valueless, doubts.map((what) => DOUBTS[what]));
   }
 
   private show(answer: Answer, question: Question | undefined, places: Map<string, Place>): void {

@@ -12,8 +12,12 @@ export interface RdfTerm {
 export interface Rows { form: 'rows'; variables: string[]; rows: (RdfTerm | null)[][] }
 export interface Truth { form: 'truth'; value: boolean }
 export interface Graph { form: 'graph'; triples: RdfTerm[][] }
-/** `unknown`: names in the question that the page's quads do not have. `unbound`: its variables that nothing binds. */
-export type Answer = (Rows | Truth | Graph) & { milliseconds: number; unknown: UnknownName[]; unbound: string[] };
+/**
+ * `unknown`: names in the question that the page's quads do not have. `unbound`: its variables that nothing binds.
+ * `doubts`: what texts that it makes of values may be written otherwise by `cluxel query`.
+ */
+export type Answer = (Rows | Truth | Graph) &
+  { milliseconds: number; unknown: UnknownName[]; unbound: string[]; doubts: ('times' | 'numbers')[] };
 
 export interface Load { kind: 'load'; engine: ArrayBuffer; terms: string; quads: ArrayBuffer }
 export interface Ask { kind: 'ask'; id: number; text: string }

@@ -26,15 +26,15 @@ const TOKEN = new RegExp([
 ].join('|'), 'gsu');
 
 export interface UnknownName { what: 'graph' | 'class' | 'name'; iri: string }
-interface Token { at: number; sign?: string; word?: string; variable?: string; iri?: string; prefix?: string; local?: string }
+export interface Token { at: number; end: number; sign?: string; word?: string; variable?: string; iri?: string; prefix?: string; local?: string }
 
-function tokensOf(text: string): Token[] {
+export function tokensOf(text: string): Token[] {
   return [...text.matchAll(TOKEN)].filter((match) => match.groups!.skipped === undefined)
-    .map((match) => ({ at: match.index, ...match.groups }));
+    .map((match) => ({ at: match.index, end: match.index + match[0].length, ...match.groups }));
 }
 
 /** Tokens without the lines of PREFIX and BASE, and what these declare. */
-function prologueOf(tokens: Token[]): { rest: Token[]; prefixes: Map<string, string> } {
+export function prologueOf(tokens: Token[]): { rest: Token[]; prefixes: Map<string, string> } {
   const prefixes = new Map<string, string>();
   let at = 0;
   for (;;) {
@@ -48,6 +48,12 @@ function prologueOf(tokens: Token[]): { rest: Token[]; prefixes: Map<string, str
       return { rest: tokens.slice(at), prefixes };
     }
   }
+}
+
+/** The IRI that a token names: relative ones as they stand, none for a prefix that nothing declares. */
+export function iriOf({ iri, prefix, local }: Token, prefixes: Map<string, string>): string | undefined {
+  const namespace = prefix === undefined ? undefined : prefixes.get(prefix) ?? KNOWN[prefix];
+  return iri ?? (namespace === undefined ? undefined : namespace + local);
 }
 
 /** PREFIX lines, in one line, for the known prefixes that a query uses and does not declare. */
@@ -81,8 +87,7 @@ export function namesIn(text: string): UnknownName[] {
   const { rest, prefixes } = prologueOf(tokensOf(text)), tokens = withoutTemplate(rest);
   const found = new Map<string, UnknownName>();
   tokens.forEach((token, i) => {
-    const namespace = token.prefix === undefined ? '' : prefixes.get(token.prefix) ?? KNOWN[token.prefix];
-    const iri = token.iri ?? (token.prefix === undefined || namespace === undefined ? undefined : namespace + token.local);
+    const iri = iriOf(token, prefixes);
     const before = tokens[i - 1], word = before?.word;
     if (!iri || !/^[a-z][a-z0-9+.-]*:/i.test(iri) || before?.sign === '^^' || tokens[i + 1]?.sign === '(') return;
     const what = /^(from|named|graph)$/i.test(word ?? '') ? 'graph' : word === 'a' ? 'class' : 'name';

@@ -4,9 +4,10 @@
 import init, { Store } from 'oxigraph/web.js';
 import type { Answer, Ask, FromWorker, Load, RdfTerm, ToWorker } from './answers';
 import { namesDataset } from './dataset';
-import { timesIn } from './lexical_times';
+import { areFullTimes, timesIn } from './lexical_times';
 import { missingPrefixes, namesIn, unboundIn, undeclaredPrefix, type UnknownName } from './names';
 import { nquadsOf } from './packed_quads';
+import { withStoredText } from './stored_text';
 
 interface EngineTerm {
   termType: string;
@@ -16,7 +17,7 @@ interface EngineTerm {
 }
 
 /** The map, and a store without quads, which tells the form of a query at once. */
-interface Stores { map: Store; blank: Store; times: Map<string, string> }
+interface Stores { map: Store; blank: Store; times: Map<string, string>; areFull: boolean }
 
 const DATE_TIME = 'http://www.w3.org/2001/XMLSchema#dateTime';
 const UNKNOWN_FUNCTION = /^The custom function <(.*)> is not supported$/;
@@ -30,7 +31,7 @@ async function load(message: Load): Promise<void> {
   const map = new Store();
   for (const piece of nquadsOf(message.terms, new Uint8Array(message.quads)))
     map.load(piece, { format: 'application/n-quads', no_transaction: true, lenient: true });
-  stores = { map, blank: new Store(), times: timesIn(message.terms) };
+  stores = { map, blank: new Store(), times: timesIn(message.terms), areFull: areFullTimes(message.terms) };
   scope.postMessage({ kind: 'loaded', quads: map.size, milliseconds: performance.now() - start });
 }
 
@@ -78,12 +79,23 @@ function unknownNames(map: Store, text: string): UnknownName[] {
   });
 }
 
-function answerOf({ map, blank, times }: Stores, written: string): Answer {
+/** The question for the engine, and what `cluxel query` may write otherwise in the texts that it makes. */
+function askable(blank: Store, text: string, areFull: boolean): { asked: string; doubts: Answer['doubts'] } {
+  const stored = withStoredText(text), isKept = isReadable(blank, stored.text);  // a label of a blank node may stand once
+  const doubts: Answer['doubts'] = [];
+  if (stored.makesText && !(isKept && areFull)) doubts.push('times');
+  if (stored.makesText && (!isKept || stored.isDoubtful)) doubts.push('numbers');
+  return { asked: isKept ? stored.text : text, doubts };
+}
+
+function answerOf({ map, blank, times, areFull }: Stores, written: string): Answer {
   const start = performance.now(), text = missingPrefixes(written) + written;
   const isUnion = !namesDataset(text, (changed) => isReadable(blank, changed));
-  const result = map.query(text, { use_default_graph_as_union: isUnion }) as unknown;
+  if (!isReadable(blank, text)) blank.query(text);  // throws with the places of the question as it was written
+  const { asked, doubts } = askable(blank, text, areFull);
+  const result = map.query(asked, { use_default_graph_as_union: isUnion }) as unknown;
   const milliseconds = performance.now() - start, unknown = unknownNames(map, written);
-  const timed = (answer: object) => ({ ...answer, milliseconds, unknown, unbound: unboundIn(written) }) as Answer;
+  const timed = (answer: object) => ({ ...answer, milliseconds, unknown, unbound: unboundIn(written), doubts }) as Answer;
   if (typeof result === 'boolean') return timed({ form: 'truth', value: result });
   if (makesGraph(blank, text)) {
     const quads = result as { subject: EngineTerm; predicate: EngineTerm; object: EngineTerm }[];
