@@ -256,6 +256,28 @@ TEST_F(ServeCommand, GraphsAreReadWhole) {
   EXPECT_EQ(shared().get("/graph").status, 400);
 }
 
+TEST_F(ServeCommand, RangesAreIgnoredAndNotOffered) {
+  const Reply whole = shared().get("/maps");
+  ASSERT_EQ(whole.status, 200);
+  EXPECT_TRUE(whole.header("Accept-Ranges").empty()) << whole.head;
+  for (const char* range : {"Range: items=0-1", "Range: bytes=5-3", "Range: bytes=0-1", "range: bytes=9999999-",
+                            "RANGE:", "Range : bytes=x", "Range: bytes=0-0,2-3\r\nRange: bytes=7-2"}) {
+    const std::string header = std::string(range) + "\r\n";
+    const Reply reply = shared().get("/maps", header);
+    EXPECT_EQ(reply.status, 200) << range << "\n" << reply.body;
+    EXPECT_EQ(reply.body, whole.body) << range;
+    EXPECT_FALSE(reply.has("Content-Range") || reply.has("Accept-Ranges")) << reply.head;
+    const Reply posted = shared().query("ASK { ?s ?p ?o }", header + "Accept: text/csv\r\n");
+    EXPECT_EQ(posted.status, 200) << range << "\n" << posted.body;
+    EXPECT_NE(posted.body.find("true"), std::string::npos) << posted.body;
+  }
+  const std::string beside = "X-Range: a\r\nRanges: b\r\nAccept: text/csv\r\n";
+  EXPECT_EQ(shared().query("ASK {}", beside).header("Content-Type"), "text/csv; charset=utf-8");
+  const Reply head = replyOf(shared().exchange("HEAD /maps HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n"));
+  EXPECT_EQ(head.status, 200);
+  EXPECT_FALSE(head.has("Accept-Ranges")) << head.head;
+}
+
 TEST_F(ServeCommand, OtherOriginsReadAnswersOnlyWhenAllowed) {
   const std::string origin = "Origin: https://maps.example\r\n";
   EXPECT_FALSE(shared().get("/maps", origin).has("Access-Control-"));

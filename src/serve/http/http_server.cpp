@@ -110,7 +110,10 @@ struct HttpServer::Impl : httplib::Server {
     set_pre_routing_handler([this](const auto& in, auto& out) { return answerWithoutBody(in, out); });
     Post(R"([\s\S]*)", [this](const auto& in, auto& out, const auto& reader) { answerWithBody(in, out, reader); });
     set_error_handler([](const httplib::Request&, httplib::Response& out) { explain(out); });
-    set_post_routing_handler([](const httplib::Request&, httplib::Response& out) { closeOnce(out); });
+    set_post_routing_handler([](const httplib::Request&, httplib::Response& out) {
+      closeOnce(out);
+      out.headers.erase("Accept-Ranges");  // cpp-httplib offers them; every answer is sent whole
+    });
     set_logger([this](const auto& in, const auto& out) { record(in, out); });
     // Without SO_REUSEPORT: two servers must not share a port unnoticed.
     set_socket_options([](socket_t sock) {
@@ -212,10 +215,7 @@ struct HttpServer::Impl : httplib::Server {
     while (stream.awaitRequest()) {
       bool is_closed = false;
       const bool is_last = is_ending;
-      const auto begin_body = [&stream](httplib::Request& request) {
-        request.ranges.clear();  // ranges of one answer could ask for it many times over
-        stream.beginBody();
-      };
+      const auto begin_body = [&stream](httplib::Request&) { stream.beginBody(); };
       const bool is_answered = process_request(stream, is_last, is_closed, begin_body);
       if (stream.hasOverlongRequestLine()) refuseUrl(stream);
       if (!is_answered || is_closed || is_last || stream.mustClose()) return;

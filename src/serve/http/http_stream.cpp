@@ -62,7 +62,7 @@ bool HttpStream::awaitRequest() {
   }
   is_header_ = is_request_line_ = true;
   has_query_ = false;
-  header_bytes_ = escape_at_ = 0;
+  header_bytes_ = escape_at_ = range_name_ = 0;
   begun_ = Clock::now();
   deadline_ = begun_ + options_.header_time;
   return begin_ < end_ || fill();
@@ -95,10 +95,10 @@ ssize_t HttpStream::read(char* out, std::size_t size) {
   }
   if (begin_ == end_ && !fill()) return fault_ == Fault::TooSlow ? -1 : 0;
   if (is_request_line_) return readRequestLine(out);
+  if (is_header_) return readHeaderLine(out);
   const std::size_t count = std::min(size, end_ - begin_);
   std::memcpy(out, buffer_.data() + begin_, count);
   begin_ += count;
-  if (is_header_) header_bytes_ += count;
   return static_cast<ssize_t>(count);
 }
 
@@ -114,6 +114,26 @@ ssize_t HttpStream::readRequestLine(char* out) {
   ++begin_;
   has_query_ = has_query_ || byte == '?';
   is_request_line_ = byte != '\n';
+  return 1;
+}
+
+/// One byte. cpp-httplib refuses ranges that it cannot read, where RFC 9110 has them ignored, and one answer asked for
+/// in many ranges would be large: the header Range is passed on as "Range-".
+ssize_t HttpStream::readHeaderLine(char* out) {
+  constexpr std::string_view name = "range";
+  const char byte = buffer_[begin_];
+  ++header_bytes_;
+  if (byte == ':' && range_name_ == name.size()) {
+    range_name_ = kOtherName;
+    *out = '-';
+    return 1;
+  }
+  *out = byte;
+  ++begin_;
+  if (byte == '\n')
+    range_name_ = 0;
+  else
+    range_name_ = range_name_ < name.size() && (byte | 0x20) == name[range_name_] ? range_name_ + 1 : kOtherName;
   return 1;
 }
 

@@ -45,15 +45,18 @@ class HttpStream : public httplib::Stream {
   socket_t socket() const override { return socket_; }
 
  private:
+  static constexpr std::size_t kOtherName = 99;
   bool fill();
   ssize_t readRequestLine(char* out);
+  ssize_t readHeaderLine(char* out);
 
   int socket_, stop_event_;
   const HttpOptions& options_;
   std::array<char, 16384> buffer_{};
   std::size_t begin_ = 0, end_ = 0;
   std::size_t header_bytes_ = 0;
-  std::size_t escape_at_ = 0;  ///< bytes already passed on of "%3F", which replaces a second question mark
+  std::size_t escape_at_ = 0;   ///< bytes already passed on of "%3F", which replaces a second question mark
+  std::size_t range_name_ = 0;  ///< bytes of "range" that the header line began with; kOtherName: with something else
   bool is_header_ = true, is_request_line_ = true, has_query_ = false, must_close_ = false;
   Fault fault_ = Fault::None;
   Clock::time_point begun_, deadline_;
