@@ -124,7 +124,7 @@ void MapService::allowOrigin(const HttpRequest& request, HttpResponse& response)
   const bool is_known = std::find(allowed.begin(), allowed.end(), origin) != allowed.end();
   if (is_open || is_known) {
     response.headers.emplace_back("Access-Control-Allow-Origin", is_open ? "*" : origin);
-    response.headers.emplace_back("Access-Control-Expose-Headers", kWarningHeader);
+    response.headers.emplace_back("Access-Control-Expose-Headers", std::string(kWarningHeader) + ", " + kStateHeader);
   }
   response.headers.emplace_back("Vary", "Origin");
 }
@@ -154,8 +154,15 @@ HttpResponse MapService::answerRoute(const Route& route, const HttpRequest& requ
   const WorkSlots::Slot slot = slots_.take(request.has_hung_up);
   if (route.map == nullptr) return answerOwn(route);
   const bool is_unfinished = options_.warns_of_unfinished && route.map->isUnfinished();
-  HttpResponse response = answerMap(route, request, target);
-  if (is_unfinished)
+  HttpResponse response;
+  try {
+    response = answerMap(route, request, target);
+  } catch (...) {
+    response = responseTo(std::current_exception());
+  }
+  // Read after the answer: where it is the state that a client knows, no commit came before the answer.
+  response.headers.emplace_back(kStateHeader, route.map->state());
+  if (is_unfinished && response.status < 400)
     response.headers.emplace_back(kWarningHeader,
                                   "the build of this map is unfinished: the answer is that of some of its scans");
   return response;

@@ -7,6 +7,7 @@
 #include "api/object_query.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/map_state.hpp"
+#include "rdf/file/check/commit_name.hpp"
 
 namespace cluxel::serve {
 
@@ -18,6 +19,14 @@ ServedMap::ServedMap(std::string name, const std::filesystem::path& file)
 
 bool ServedMap::isUnfinished() const {
   return mapping::hasUnfinishedBuild(rdf::Environment::open(file(), rdf::OpenMode::ReadOnly)->read());
+}
+
+std::string ServedMap::state() const {
+  try {
+    return rdf::commitName(rdf::Environment::open(file(), rdf::OpenMode::ReadOnly)->read());
+  } catch (const Error&) {
+    return "unknown";
+  }
 }
 
 void ServedMap::withReader(const std::function<void(const mapping::MapReader&)>& use) {

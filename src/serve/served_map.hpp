@@ -36,6 +36,8 @@ class ServedMap {
   rdf::QuadReader quads() const { return keeper_.quads(); }
   /// Whether the newest commit is one of a build that is not finished.
   bool isUnfinished() const;
+  /// Names the newest commit, for the header of answers; "unknown" when the file cannot be read now.
+  std::string state() const;
   /// Calls `use` with the layers of the newest commit. Callers do not wait for each other, but for layers that another
   /// one is reading: each layer of a commit is read once, and kept as long as the commit is the newest.
   void withReader(const std::function<void(const mapping::MapReader&)>& use);

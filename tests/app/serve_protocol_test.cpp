@@ -282,7 +282,7 @@ TEST_F(ServeCommand, OtherOriginsReadAnswersOnlyWhenAllowed) {
   const std::string origin = "Origin: https://maps.example\r\n";
   EXPECT_FALSE(shared().get("/maps", origin).has("Access-Control-"));
   const Served open = serve("--cors https://maps.example");
-  EXPECT_EQ(open.get("/maps", origin).header("Access-Control-Expose-Headers"), "Cluxel-Warning");
+  EXPECT_EQ(open.get("/maps", origin).header("Access-Control-Expose-Headers"), "Cluxel-Warning, Cluxel-State");
   EXPECT_EQ(open.get("/maps", origin).header("Access-Control-Allow-Origin"), "https://maps.example");
   EXPECT_FALSE(open.get("/maps", "Origin: https://other.example\r\n").has("Access-Control-Allow-Origin"));
   const Reply asked = replyOf(open.exchange("OPTIONS /sparql HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n" +

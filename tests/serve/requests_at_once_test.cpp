@@ -4,10 +4,12 @@
 
 #include <atomic>
 #include <future>
+#include <set>
 #include <thread>
 #include <vector>
 
 #include "mapping/small_campus.hpp"
+#include "rdf/file/check/commit_name.hpp"
 #include "rdf/map_iris.hpp"
 #include "rdf/vocabulary.hpp"
 #include "serve/map_service.hpp"
@@ -222,6 +224,35 @@ TEST_F(RequestsAtOnce, AListOfObjectsIsOfOneCommit) {
   is_over = true;
   reader.join();
   EXPECT_EQ(mixed, 0);
+}
+
+std::string stateIn(const HttpResponse& response) {
+  for (const auto& [name, value] : response.headers)
+    if (name == "Cluxel-State") return value;
+  return {};
+}
+
+/// A page knows by it whether an answer is of the map that it shows.
+TEST_F(RequestsAtOnce, TheHeaderOfAnAnswerNamesTheNewestCommit) {
+  const auto served = service(2);
+  const auto nameNow = [&] { return rdf::commitName(rdf::Environment::open(file, rdf::OpenMode::ReadOnly)->read()); };
+  std::set<std::string> names;
+  for (const char* what : {"", "one", "two"}) {
+    if (*what != 0) {
+      const HttpResponse updated = insert(*served, what);
+      EXPECT_EQ(updated.status, 200) << updated.body;
+      EXPECT_EQ(stateIn(updated), nameNow());
+    }
+    std::vector<std::string> all = targets();
+    all.insert(all.end(), {"/maps/map", "/page", "/objects/ffff0000", "/tiles/0/0?state=old", "/sparql?query=SELECT"});
+    for (const std::string& target : all) EXPECT_EQ(stateIn(get(*served, target)), nameNow()) << target;
+    EXPECT_TRUE(names.insert(nameNow()).second) << "each commit has a name of its own";
+  }
+  EXPECT_EQ(stateIn(get(*served, "/maps")), "") << "no map is asked";
+  EXPECT_EQ(stateIn(get(*service(1), "/objects")), nameNow()) << "another service knows the same state";
+  std::filesystem::rename(file, folder->path() / "away.clx");
+  served->tidy();
+  EXPECT_EQ(get(*served, "/objects").status, 503);
 }
 
 }  // namespace

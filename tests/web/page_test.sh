@@ -66,9 +66,14 @@ trap 'kill "$service"' EXIT
 # The same with a page that holds a tenth of the points.
 "$cluxel" serve campus.clx --port 0 --page-points 12000 --quiet >sample.url &
 sample_service=$!
-trap 'kill "$service" "$sample_service"' EXIT
+# One that changes under its page.
+cp campus.clx shrinking.clx
+"$cluxel" serve shrinking.clx --port 0 --quiet >changed.url &
+changed_service=$!
+trap 'kill "$service" "$sample_service" "$changed_service"' EXIT
 until [ -s url ] || ! kill -0 "$service"; do sleep 0.1; done
 until [ -s sample.url ] || ! kill -0 "$sample_service"; do sleep 0.1; done
-CLUXEL_SERVICE=$(cat url) CLUXEL_SAMPLE_SERVICE=$(cat sample.url)
-export CLUXEL_SERVICE CLUXEL_SAMPLE_SERVICE
+until [ -s changed.url ] || ! kill -0 "$changed_service"; do sleep 0.1; done
+CLUXEL_SERVICE=$(cat url) CLUXEL_SAMPLE_SERVICE=$(cat sample.url) CLUXEL_CHANGED_SERVICE=$(cat changed.url)
+export CLUXEL_SERVICE CLUXEL_SAMPLE_SERVICE CLUXEL_CHANGED_SERVICE
 for file in "$source_dir"/tests/web/*_test.mjs; do node --test "$file"; done

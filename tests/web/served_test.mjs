@@ -204,6 +204,8 @@ test('a statement is saved in the map for those who have the token', async () =>
   await page.fill('#token', token);
   await page.click('text=Save in the map');
   await page.waitForFunction(() => /Saved/.test(document.querySelector('.correction').textContent));
+  assert.match(await page.textContent('.correction'), /load it anew to see the statement/);
+  assert.ok(await page.isVisible('.changed'), 'the page is of the map without the statement');
   const told = JSON.parse(cluxel('query', map, '-e', `SELECT ?label { <${iri}> <http://www.w3.org/2000/01/rdf-schema#label> ?label }`, '--format', 'json'));
   assert.ok(told.results.bindings.some((row) => row.label.value === 'seen by the test'));
 });

@@ -7,6 +7,7 @@ import { Service } from './data/service';
 import { counted, el } from './dom';
 import { AskPanel } from './panels/ask';
 import { ObjectCard } from './panels/card';
+import { changedBanner } from './panels/changed';
 import { Help } from './panels/help';
 import { Legend } from './panels/legend';
 import { PlaceCard } from './panels/place_card';
@@ -115,7 +116,7 @@ async function open(app: HTMLElement): Promise<void> {
   const help = new Help(model), toolbar = new Toolbar(stage, store, () => help.show(toolbar.commands), () => { tabs.show('questions'); ask.focus(); });
   store.on(['ruleLine'], () => tabs.show('rules'));
   store.on(['lit'], (state) => { if (state.lit) store.set('tints', null); });
-  side.append(tabs.element, ask.element, tasks.element, visits.element, rules.element);
+  side.append(changedBanner(service), tabs.element, ask.element, tasks.element, visits.element, rules.element);
   const lines = new PlaceLines(viewer, ground), allRead = new Promise<void>((done) => { tilesRead = done; });
   const layer = new PlacePanel(places, lines, store, stage, allRead);
   host.append(new Legend(model, store, viewer.palette, layer.element).element, toolbar.element);

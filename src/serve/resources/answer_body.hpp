@@ -50,6 +50,9 @@ sparql::QueryOptions queryOptions(const RequestLimits& limits, const HttpRequest
 /// The header of each warning about a query: text in ASCII, other bytes and % percent-encoded.
 inline constexpr const char* kWarningHeader = "Cluxel-Warning";
 
+/// The header that names the newest commit of the map, read when the answer was ready.
+inline constexpr const char* kStateHeader = "Cluxel-State";
+
 /// Runs a query with its parameters bound. Warnings about it stand in headers, and below a table.
 HttpResponse answerQuery(const rdf::QuadReader& reader, const std::string& text, const sparql::QueryOptions& options,
                          const std::vector<sparql::Binding>& bindings, const FormatRequest& requested,

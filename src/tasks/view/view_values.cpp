@@ -8,6 +8,7 @@
 #include <set>
 
 #include "mapping/facts/object_geometry.hpp"
+#include "rdf/file/check/commit_name.hpp"
 #include "rdf/map_iris.hpp"
 #include "rdf/ontology/ontology.hpp"
 #include "rdf/vocabulary.hpp"
@@ -152,6 +153,7 @@ std::string mapValuesJson(const mapping::MapReader& map, const PointTiles& tiles
                 {"lowestHeight", kLowestHeight_m},
                 {"heightStep", kHeightStep_m},
                 {"intensity", tiles.intensity}};
+  if (options.is_served) json["state"] = rdf::commitName(map.transaction());
   if (options.is_served) json["tileState"] = tileStateOf(map);
   json["labels"] = scan::kPrimitiveLabelNames;
   json["clouds"] = cloudsJson(map);

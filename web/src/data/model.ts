@@ -57,7 +57,7 @@ export interface VisitChanges { since: string; changes: SiteChange[]; states: Ob
 /** An earlier object that an object was made of, by which operation and when. */
 export interface Ancestor { from: string; operation: string; time: string }
 interface MapValues {
-  name: string; served: boolean; tileState?: string; finished: boolean; crs: string; origin: number[];
+  name: string; served: boolean; state?: string; tileState?: string; finished: boolean; crs: string; origin: number[];
   points: number; pointsInMap: number; quadsLeftOut: number;
   quantum: number; lowestHeight: number; heightStep: number; intensity: number[];
   labels: string[]; clouds: Cloud[]; tiles: TileInfo[]; questions: Question[]; properties: Property[];

@@ -10,10 +10,16 @@ export interface TaskAnswer { columns: TaskColumn[]; rows: TaskRow[]; notes: str
 export class Service {
   /** The token for updates and trials; never stored. */
   token = '';
+  /** Whether an answer came from another state of the map than the page's. It stays so until the page is loaded anew. */
+  hasChanged = false;
+  /** Called once, when it has. */
+  onChange: () => void = () => {};
+
+  private constructor(private readonly state: string) {}
 
   /** The service of a page that was fetched from one. */
   static of(model: MapModel): Service | undefined {
-    return model.values.served && /^https?:$/.test(location.protocol) ? new Service() : undefined;
+    return model.values.served && /^https?:$/.test(location.protocol) ? new Service(model.values.state ?? '') : undefined;
   }
 
   /** `path` is relative to the map: "tasks/route?from=0,0". */
@@ -25,10 +31,23 @@ export class Service {
     return new Uint8Array(await (await this.answer(path, {})).arrayBuffer());
   }
 
+  /** What to say beside an answer: empty while the map is the page's. */
+  get note(): string {
+    return this.hasChanged ? 'This is of the map as it is now, which has changed since this page was made.' : '';
+  }
+
   private async answer(path: string, init: RequestInit): Promise<Response> {
     const response = await fetch(new URL(path, location.href.replace(/[?#].*$/s, '')), init);
+    this.compare(response.headers.get('Cluxel-State'));
     if (!response.ok) throw new Error((await response.text()).trim() || `The service answered ${response.status}.`);
     return response;
+  }
+
+  /** An answer without a state, as of a server before the service, tells nothing of the map. */
+  private compare(state: string | null): void {
+    if (state === null || state === this.state || this.hasChanged) return;
+    this.hasChanged = true;
+    this.onChange();
   }
 
   async json<T>(path: string, init: RequestInit = {}): Promise<T> {

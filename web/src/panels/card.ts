@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The card of the selected object: attributes with units, parts, scans that saw it, and reasons.
-import { type Ancestor, capitalised, CLX, type MapModel, type MapObject } from '../data/model';
+import { capitalised, CLX, type MapModel, type MapObject } from '../data/model';
 import type { Service } from '../data/service';
 import { counted, el, faultNote, iconButton, rounded, swatch } from '../dom';
 import type { Answer, Rows } from '../sparql/answers';
@@ -8,15 +8,10 @@ import type { Portrait } from '../scene/portrait';
 import type { Engine } from '../sparql/engine';
 import type { Store } from '../state';
 import { shortened } from './editor';
+import { lineageOf } from './lineage';
 import { reasonsView } from './reasons';
 import { statementForm } from './statement';
 import { WhyNotQuestion } from './why_not';
-
-/** What the history says of an object now; a file holds what it said when it was written. */
-const LINEAGE = (iri: string) => `PREFIX prov: <http://www.w3.org/ns/prov#> PREFIX clx: <${CLX}>
-  SELECT ?from ?operation ?time { GRAPH <https://w3id.org/cluxel/graph/history> { <${iri}> prov:wasDerivedFrom ?from
-    OPTIONAL { <${iri}> prov:wasGeneratedBy ?run . ?run clx:operation ?operation ; prov:endedAtTime ?time } } } ORDER BY ?time ?from`;
-interface LineageJson { results: { bindings: Record<'from' | 'operation' | 'time', { value: string } | undefined>[] } }
 
 export class ObjectCard {
   readonly element = el('aside', { class: 'card', hidden: true, 'aria-label': 'Selected object', tabindex: -1 });
@@ -47,7 +42,7 @@ export class ObjectCard {
                                  el('details', { ontoggle: (event: Event) => {
                                    if ((event.target as HTMLDetailsElement).open) void this.fillFacts(object, facts);
                                  } }, el('summary', {}, 'All facts and observations'), facts),
-                                 this.lineage(object), statementForm(object, this.model, this.service));
+                                 lineageOf(object, this.model, this.service), statementForm(object, this.model, this.service));
     this.element.scrollTop = 0;
     void this.fillReasons(object, reasons);
     void this.fillPosition(object, position);
@@ -124,29 +119,6 @@ export class ObjectCard {
     if (this.store.state.selected !== object) return;
     host.replaceWith(reasons ? reasonsView(reasons, this.model, new WhyNotQuestion(this.model, this.service, object).element, this.store)
                              : el('p', { class: 'note' }, 'This page was written without reasons: cluxel explain gives them.'));
-  }
-
-  private lineage(object: MapObject): HTMLElement {
-    const host = el('div', { class: 'lineage-list' });
-    const fill = async () => {
-      if (host.childElementCount > 0) return;
-      try {
-        const rows = this.service ? await this.askedLineage(this.service, object) : await this.model.lineageOf(object);
-        host.replaceChildren(rows.length === 0 ? el('p', { class: 'note' }, 'It was made by the build, and no change has touched it.')
-          : el('ul', { class: 'plain-list' }, ...rows.map((row) => el('li', { title: row.from },
-              `from ${shortened(row.from).slice(0, 24)}`, el('small', {}, `${row.operation} ${row.time.slice(0, 16)}`)))));
-      } catch (fault) {
-        host.replaceChildren(faultNote(fault));
-      }
-    };
-    return el('details', { class: 'lineage', ontoggle: (event: Event) => { if ((event.target as HTMLDetailsElement).open) void fill(); } },
-              el('summary', {}, 'Lineage'), host);
-  }
-
-  private async askedLineage(service: Service, object: MapObject): Promise<Ancestor[]> {
-    const told = await service.json<LineageJson>(`sparql?format=json&query=${encodeURIComponent(LINEAGE(object.iri))}`);
-    return told.results.bindings.map((row) => (
-      { from: row.from?.value ?? '', operation: row.operation?.value ?? '', time: row.time?.value ?? '' }));
   }
 
   private async fillFacts(object: MapObject, host: HTMLElement): Promise<void> {

@@ -137,6 +137,7 @@ export class RulePanel {
     this.looks.hidden = trial.changes.length === 0;
     this.status.textContent = trial.changes.length === 0 ? 'Nothing changes.'
       : `${counted(trial.changes.length)} objects change; ${counted(trial.before)} objects before, ${counted(trial.after)} after`;
+    if (this.service?.note) this.status.textContent += `\n${this.service.note}`;
     this.colour();
     const kinds = (Object.keys(KINDS) as TrialChange['kind'][]).filter((kind) => trial.counts[kind] > 0);
     this.list.replaceChildren(

@@ -18,7 +18,7 @@ export function statementForm(object: MapObject, model: MapModel, service: Servi
   } }, 'Copy');
   const saveIt = service && el('button', { type: 'button', class: 'plain', onclick: () => {
     service.post('sparql', 'application/sparql-update', code.textContent ?? '').then(
-      () => { said.textContent = 'Saved as an operator statement.'; },
+      () => { said.textContent = 'Saved as an operator statement. This page shows the map as it was before: load it anew to see the statement.'; },
       (fault: Error) => { said.textContent = fault.message; });
   } }, 'Save in the map');
   const show = () => {

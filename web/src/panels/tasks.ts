@@ -111,7 +111,7 @@ export class TaskPanel {
     const marks = answer.rows.map((row, i) => this.markOf(row, objectsOfRow[i], i));
     const placeless = marks.filter((mark, i) => !mark && !answer.rows[i].geometry && objectsOfRow[i].length === 0).length;
     this.status.textContent = [`${counted(answer.rows.length)} ${answer.rows.length === 1 ? 'row' : 'rows'}`,
-                               placeless > 0 && `${counted(placeless)} without a place in the map`, ...answer.notes].filter(Boolean).join(' · ');
+                               placeless > 0 && `${counted(placeless)} without a place in the map`, ...answer.notes, this.service?.note].filter(Boolean).join(' · ');
     const question: Question = { file: task.name, title: task.title, text: '', parameters: [], columns: answer.columns };
     this.marksOfRow = marks;
     this.table.show(rows, question, objectsOfRow, marks.map(Boolean));

@@ -40,6 +40,7 @@ export class WhyNotQuestion {
       if (asked !== this.asked) return;
       if (told.rules.length > 0) this.show(told.rules);
       else this.answer.replaceChildren(el('p', { class: 'note' }, 'No rule makes this class.'));
+      if (this.service!.note) this.answer.append(el('p', { class: 'note' }, this.service!.note));
     } catch (fault) {
       if (asked !== this.asked) return;
       this.answer.replaceChildren(faultNote(fault));
