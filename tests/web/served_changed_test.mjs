@@ -57,7 +57,7 @@ test('a map that has changed is told with every answer, once above them all, and
     assert.equal((told.match(/went on as/g) ?? []).length, Number(next.results.bindings[0].n.value));
   }
   assert.match(await lineageOf(page, kept[0]), /of the map as it is now, which has changed/);
-  assert.match(await askInventory(page), /rows.* · This is of the map as it is now, which has changed since this page was made..$/);
+  assert.match(await askInventory(page), /rows.* · This is of the map as it is now, which has changed since this page was made\.$/);
   assert.equal(await page.locator('.changed p').count(), 1);
   assert.ok(await page.isVisible('.changed'));
   await Promise.all([page.waitForNavigation({ timeout: 120_000 }), page.click('text=Load the page anew')]);

@@ -38,6 +38,8 @@ const SAME = [
   'SELECT (STR(?least) AS ?text) { { SELECT (MIN(?h) AS ?least) { ?o clx:heading ?h FILTER(?h >= 0) } } }',
   'SELECT (STR(SUM(?n)) AS ?sum) (STR(SUM(?n) / 4) AS ?part) (STR(AVG(?n)) AS ?mean) { VALUES ?n { 2.0 4.0 } }',
   'SELECT (SUM(STRLEN(STR(STR(?v)))) AS ?n) { ?o a clx:Tree ; ?p ?v FILTER(!isBlank(?v)) }',
+  `SELECT (${'STR('.repeat(30)}MIN(?t)${')'.repeat(30)} AS ?text) { ${TIMED} }`,
+  'SELECT (STRLEN(STR(GROUP_CONCAT(STR(?t)))) AS ?n) { ?o clx:lastSeen ?t }',
   'SELECT (GROUP_CONCAT(?x) AS ?g) { VALUES ?x { "a"@en "b"@en } }',
   'SELECT (GROUP_CONCAT(?x) AS ?g) { VALUES ?x { 1 UNDEF 2 } }',
   'SELECT (GROUP_CONCAT(?x) AS ?g) { VALUES ?x { <urn:a> "b" } }',
@@ -85,5 +87,8 @@ test('below an answer stands that numbers as text may be written otherwise', asy
   };
   assert.match(await told('SELECT (STR(IF(?h > 1, ?h, 0.0)) AS ?text) { ?o clx:height ?h } LIMIT 1'), /\nNumbers as text may be written otherwise.*cluxel query/);
   assert.match(await told('SELECT (STR(xsd:double(?h)) AS ?text) { ?o clx:height ?h } LIMIT 1'), /\nNumbers as text/);
+  const nested = await told(`SELECT (${'STR(CONCAT('.repeat(20)}STR(?t)${'))'.repeat(20)} AS ?text) { ${TIMED} } LIMIT 1`);
+  assert.match(nested, /\nTimes as text may be written otherwise/);
+  assert.match(await told('ASK { ?o clx:lastSeen ?t FILTER(STR(EXISTS { _:b clx:lastSeen ?t }) = "true") }'), /\nTimes as text.*\nNumbers as text/);
   assert.match(await told('SELECT (STR(?h) AS ?text) { ?o clx:height ?h } LIMIT 1'), /ms( · .*)?$/);
 });

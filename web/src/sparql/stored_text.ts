@@ -14,12 +14,17 @@ const MAY_HAND_ON = /^(MIN|MAX|SAMPLE|COALESCE|IF)$/i;
 const fullTimeOf = (text: string) =>
   `CONCAT(REPLACE(${text}, "([.].*)?Z$", ""), ".", SUBSTR(CONCAT(STRBEFORE(STRAFTER(${text}, "."), "Z"), "000000"), 1, 6), "Z")`;
 
+/** A value is written several times, so that calls within calls grow: longer ones stay as they are. */
+const LONGEST = 20_000;
+
 export interface Rewritten {
   text: string;
   /** Whether a call makes text of a value. */
   makesText: boolean;
   /** Whether numbers in such a text may be written otherwise: it cannot be told if they are stored or computed. */
   isDoubtful: boolean;
+  /** Whether all calls are written anew. */
+  isWhole: boolean;
 }
 
 /** A query whose calls of STR, xsd:string and GROUP_CONCAT give the text that the map has. */
@@ -34,6 +39,7 @@ class Rewriting {
   private readonly computed = new Map<string, [number, number][]>();
   private makesText = false;
   private isDoubtful = false;
+  private isWhole = true;
 
   constructor(private readonly text: string) {
     const { rest, prefixes } = prologueOf(tokensOf(text));
@@ -52,7 +58,8 @@ class Rewriting {
   done(): Rewritten {
     const begin = this.tokens[0]?.at ?? this.text.length;
     const body = this.written(0, this.tokens.length, begin, this.text.length);
-    return { text: this.text.slice(0, begin) + body, makesText: this.makesText, isDoubtful: this.isDoubtful };
+    const { makesText, isDoubtful, isWhole } = this;
+    return { text: this.text.slice(0, begin) + body, makesText, isDoubtful, isWhole };
   }
 
   /** The text from `at` to `end`, which has the tokens from `first` to before `last`. */
@@ -91,15 +98,18 @@ class Rewriting {
       if (depth === 0 && sign === ';') break;
     }
     const begin = this.tokens[first - 1].end, end = this.tokens[last].at;
-    const isText = this.callAt(first) !== undefined && this.closeOf(first + 1, last) === last - 1;
-    const joined = isText ? this.written(first, last, begin, end) : this.textOf(first, last, begin, end, true);
-    return this.text.slice(this.tokens[i].at, begin) + ` ${joined}` + this.text.slice(end, this.tokens[close].end);
+    return this.text.slice(this.tokens[i].at, begin) + ` ${this.textOf(first, last, begin, end, true)}` + this.text.slice(end, this.tokens[close].end);
   }
 
   /** The stored text of an expression. Casts of decimals give the shortest text in `cluxel query`, too. */
   private textOf(first: number, last: number, at: number, end: number, keepsDecimals: boolean): string {
     this.makesText = true;
     const value = this.written(first, last, at, end), text = `STR(${value})`;
+    if (this.callAt(first) !== undefined && this.closeOf(first + 1, last) === last - 1) return value;  // it is text already
+    if (value.length > LONGEST) {
+      this.isWhole = false;
+      return text;
+    }
     const is = (type: string) => `isLiteral(${value}) && DATATYPE(${value}) = <${XSD}${type}>`;
     const isStored = keepsDecimals && this.isStored(first, last, []);
     if (keepsDecimals && !isStored && this.mayHandOn(first, last, [])) this.isDoubtful = true;

@@ -83,8 +83,9 @@ function unknownNames(map: Store, text: string): UnknownName[] {
 function askable(blank: Store, text: string, areFull: boolean): { asked: string; doubts: Answer['doubts'] } {
   const stored = withStoredText(text), isKept = isReadable(blank, stored.text);  // a label of a blank node may stand once
   const doubts: Answer['doubts'] = [];
-  if (stored.makesText && !(isKept && areFull)) doubts.push('times');
-  if (stored.makesText && (!isKept || stored.isDoubtful)) doubts.push('numbers');
+  const isSure = isKept && stored.isWhole;
+  if (stored.makesText && !(isSure && areFull)) doubts.push('times');
+  if (stored.makesText && !(isSure && !stored.isDoubtful)) doubts.push('numbers');
   return { asked: isKept ? stored.text : text, doubts };
 }
 
