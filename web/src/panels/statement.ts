@@ -17,8 +17,9 @@ export function statementForm(object: MapObject, model: MapModel, service: Servi
     });
   } }, 'Copy');
   const saveIt = service && el('button', { type: 'button', class: 'plain', onclick: () => {
+    const gone = service.hasChanged ? ' If the object has gone meanwhile, the statement is about what it went on as.' : '';
     service.post('sparql', 'application/sparql-update', code.textContent ?? '').then(
-      () => { said.textContent = 'Saved as an operator statement. This page shows the map as it was before: load it anew to see the statement.'; },
+      () => { said.textContent = `Saved as an operator statement.${gone} This page shows the map as it was before: load it anew to see the statement.`; },
       (fault: Error) => { said.textContent = fault.message; });
   } }, 'Save in the map');
   const show = () => {
