@@ -11,6 +11,7 @@
 #include "tasks/search/place_learning.hpp"
 #include "tasks/search/search_tour.hpp"
 #include "tasks/ways/cost_map.hpp"
+#include "tasks/ways/way_limits.hpp"
 #include "tasks/ways/way_report.hpp"
 
 namespace cluxel::app {
@@ -84,15 +85,15 @@ ExitCode reach(const WayArguments& arguments, Session& session) {
   return ExitCode::Done;
 }
 
-ExitCode costMap(WayArguments arguments, Session& session) {
+ExitCode costMap(const WayArguments& arguments, Session& session) {
   if (arguments.output.extension() != ".pgm")
     throw Error(ErrorKind::InvalidArgument, "costmap: the output is an image; write -o NAME.pgm");
   const fs::path yaml = fs::path(arguments.output).replace_extension(".yaml");
   refuseToReplaceMap(arguments.output);
   refuseToReplaceMap(yaml);
   const mapping::MapReader map = openMap(arguments, session);
-  arguments.request.params.width_m = 0;  // the navigation software of the robot adds its width
-  const tasks::CostMap cost_map = costMapOf(passableIn(map, arguments.request), arguments.output.filename().string());
+  const tasks::CostMap cost_map =
+      costMapOf(costMapGridIn(map, arguments.request), arguments.output.filename().string());
   writeOutput(yaml, cost_map.yaml);
   writeOutput(arguments.output, cost_map.image);
   return ExitCode::Done;
@@ -118,20 +119,28 @@ ExitCode search(const WayArguments& arguments, tasks::SearchRequest request, Ses
   return answer.stops.empty() ? ExitCode::NoRows : ExitCode::Done;
 }
 
+NumberRange numbersIn(const tasks::Limits& limits) {
+  return {limits.min, limits.max};
+}
+
+WholeRange wholeNumbersIn(const tasks::Limits& limits) {
+  return {static_cast<std::uint64_t>(limits.min), static_cast<std::uint64_t>(limits.max)};
+}
+
 /// Options of all ways.
 void addWayOptions(CLI::App& command, WayArguments& arguments) {
   tasks::WayRequest& request = arguments.request;
   command.add_option("--without", request.without, "a class, Movable or Static: leave these objects out");
   command.add_flag("--with-gone", request.with_gone, "keep objects that later scans show to be gone");
   command.add_option("--max-slope", request.params.max_slope, "largest slope, rise over run [0.12]")
-      ->check(within({.min = 0, .max = 10}));
+      ->check(within(numbersIn(tasks::kMaxSlope)));
   command.add_option("--max-step", request.params.max_step_m, "height of a kerb that can be crossed [m, 0.06]")
-      ->check(within({.min = 0, .max = 2}));
+      ->check(within(numbersIn(tasks::kMaxStep_m)));
   command
       .add_option("--height", request.terrain.highest_m, "clearance: objects that hang higher are no obstacles [m, 2]")
-      ->check(within({.min = 0.3, .max = 20}));
+      ->check(within(numbersIn(tasks::kClearance_m)));
   command.add_option("--cell", request.terrain.cell_m, "edge length of a grid cell [m, 0.25]")
-      ->check(oneOf(std::vector<double>{0.125, 0.25, 0.5, 1}));
+      ->check(oneOf(std::vector<double>(tasks::kCells_m.begin(), tasks::kCells_m.end())));
   addAllowUnfinished(command, arguments.allow_unfinished);
 }
 
@@ -139,7 +148,7 @@ void addWalkOptions(CLI::App& command, WayArguments& arguments) {
   command.add_option("map", arguments.map, "a map")->required();
   command.add_option("from", arguments.from, "X,Y in metres of the map frame, or an object")->required();
   command.add_option("--width", arguments.request.params.width_m, "free width that is needed [m, 0.6]")
-      ->check(within({.min = 0, .max = 20}));
+      ->check(within(numbersIn(tasks::kWidth_m)));
 }
 
 ExitCode learnPlaces(const std::vector<fs::path>& maps, const fs::path& output, Session& session) {
@@ -193,15 +202,15 @@ void addSearch(CLI::App& app, Session& session) {
   command->add_option("--from", request->from, "start: X,Y or an object; default: where the last scan was taken");
   command->add_option("--budget", request->tour.budget_m, "largest length of the walk [m]")->check(above0());
   command->add_option("--stops", request->tour.max_stops, "largest number of stops [10]")
-      ->check(wholeWithin({.min = 1, .max = 100}));
+      ->check(wholeWithin(wholeNumbersIn(tasks::kTourStops)));
   command->add_option("--view", request->search.view_m, "distance within which an object is recognised [m, 10]")
-      ->check(within({.min = 1, .max = 100}));
+      ->check(within(numbersIn(tasks::kView_m)));
   command
       ->add_option("--detection", request->search.detection,
                    "share of the objects of the class in view of a scan that the map holds [0.8]")
-      ->check(share());
+      ->check(within(numbersIn(tasks::kDetection)));
   command->add_option("--width", options->request.params.width_m, "free width that is needed [m, 0.6]")
-      ->check(within({.min = 0, .max = 20}));
+      ->check(within(numbersIn(tasks::kWidth_m)));
   addWayOptions(*command, *options);
   onRun(*command, session, [options, request, learn, &session] {
     if (learn->parsed()) return session.exit_code;
@@ -221,7 +230,7 @@ void addWays(CLI::App& app, Session& session) {
   addWayOptions(*route_command, *options);
   route_command->add_option("--near", options->request.near, "a class: prefer routes near objects of this class");
   route_command->add_option("--alternatives", options->alternatives, "number of routes to look for [1]")
-      ->check(wholeWithin({.min = 1, .max = 9}));
+      ->check(wholeWithin(wholeNumbersIn(tasks::kAlternatives)));
   route_command->add_option("--format", options->format, "geojson")->check(oneOf(std::vector<std::string>{"geojson"}));
   route_command->add_flag("--local", options->local,
                           "write GeoJSON in metres of the map frame instead of longitude and latitude");

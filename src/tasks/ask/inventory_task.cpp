@@ -212,15 +212,14 @@ std::optional<std::string> noteOfFarStreets(double nearest_m, double within_m) {
 }
 
 /// Tells how much is left out, because later scans show it to be gone.
-void addNotesOfGone(const mapping::MapReader& map, std::size_t rows_left_out, TaskAnswer& answer) {
+void addNotesOfGone(const mapping::MapReader& map, std::size_t rows_left_out, std::vector<std::string>& notes) {
   const std::vector<bool> is_gone = goneAmong(map);
   if (const auto gone = std::count(is_gone.begin(), is_gone.end(), true); gone > 0)
-    answer.notes.push_back("without " + std::to_string(gone) +
-                           " objects of all classes that later scans show to be gone");
+    notes.push_back("without " + std::to_string(gone) + " objects of all classes that later scans show to be gone");
   static_assert(kFewestInBrokenRow == 3, "the note names the number");
   if (rows_left_out > 0)
-    answer.notes.push_back("without " + std::to_string(rows_left_out) +
-                           " parking rows of which fewer than three vehicles are left");
+    notes.push_back("without " + std::to_string(rows_left_out) +
+                    " parking rows of which fewer than three vehicles are left");
 }
 
 /// Which of the places that rules derive a register asks for.
@@ -235,6 +234,15 @@ InventoryParams placesAmong(const std::vector<RegisterEntry>& entries) {
 
 }  // namespace
 
+std::vector<std::string> notesOf(const mapping::MapReader& map, const InventoryParams& params,
+                                 const Inventory& inventory) {
+  std::vector<std::string> notes;
+  if (auto missing = noteOfMissingRules(map, params)) notes.push_back(std::move(*missing));
+  if (auto far = noteOfFarStreets(inventory.nearest_street_m, params.street_within_m)) notes.push_back(std::move(*far));
+  addNotesOfGone(map, inventory.rows_left_out, notes);
+  return notes;
+}
+
 TaskAnswer inventoryAnswer(const mapping::MapReader& map, const InventoryParams& params,
                            const std::vector<Street>& streets) {
   TaskAnswer answer{inventoryColumns(!streets.empty()), {}};
@@ -242,7 +250,7 @@ TaskAnswer inventoryAnswer(const mapping::MapReader& map, const InventoryParams&
   const Inventory inventory = inventoryOf(map, params, streets);
   for (const InventoryItem& item : inventory.items) {
     ++counts[item.kind];
-    const TaskCell count = item.kind == "ParkingRow" ? TaskCell(static_cast<double>(item.count)) : TaskCell();
+    const TaskCell count = isRow(item) ? TaskCell(static_cast<double>(item.count)) : TaskCell();
     answer.rows.push_back({{item.kind, namedCell(item.object), item.at.x(), item.at.y(), measuredCell(item.height_m),
                             measuredCell(item.crown_m), measuredCell(item.width_m), measuredCell(item.length_m), count},
                            shapeOfItem(item)});
@@ -252,10 +260,7 @@ TaskAnswer inventoryAnswer(const mapping::MapReader& map, const InventoryParams&
   std::string note;
   for (const auto& [kind, count] : counts) note += (note.empty() ? "" : ", ") + std::to_string(count) + " " + kind;
   if (!note.empty()) answer.notes.push_back(note);
-  if (const auto missing = noteOfMissingRules(map, params)) answer.notes.push_back(*missing);
-  if (const auto far = noteOfFarStreets(inventory.nearest_street_m, params.street_within_m))
-    answer.notes.push_back(*far);
-  addNotesOfGone(map, inventory.rows_left_out, answer);
+  for (std::string& other : notesOf(map, params, inventory)) answer.notes.push_back(std::move(other));
   return answer;
 }
 
@@ -291,7 +296,7 @@ TaskAnswer registerAnswer(const mapping::MapReader& map, const InventoryParams& 
   answer.notes.push_back(note);
   const InventoryParams places = placesAmong(entries);
   if (const auto missing = noteOfMissingRules(map, places)) answer.notes.push_back(*missing);
-  addNotesOfGone(map, things.rows_left_out, answer);
+  addNotesOfGone(map, things.rows_left_out, answer.notes);
   return answer;
 }
 

@@ -7,6 +7,9 @@
 
 namespace cluxel::tasks {
 
+/// What a person should know of an inventory beside its items: what is left out and why, and streets that are all far.
+std::vector<std::string> notesOf(const mapping::MapReader& map, const InventoryParams& params,
+                                 const Inventory& inventory);
 /// With the columns of the task `inventory` and, where there are streets, the name of the nearest one as the third.
 TaskAnswer inventoryAnswer(const mapping::MapReader& map, const InventoryParams& params,
                            const std::vector<Street>& streets = {});

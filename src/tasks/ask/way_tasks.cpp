@@ -9,6 +9,7 @@
 #include "tasks/ask/task_table.hpp"
 #include "tasks/search/search_tour.hpp"
 #include "tasks/ways/cost_map.hpp"
+#include "tasks/ways/way_limits.hpp"
 #include "tasks/ways/way_report.hpp"
 
 namespace cluxel::tasks {
@@ -17,13 +18,12 @@ namespace {
 
 using Kind = TaskParameter::Kind;
 
-TaskParameter number(const char* name, const char* unit, const char* standard, const char* help, double min,
-                     double max) {
-  return {name, unit, standard, help, Kind::Number, false, false, min, max};
+TaskParameter number(const char* name, const char* unit, const char* standard, const char* help, const Limits& limits) {
+  return {name, unit, standard, help, Kind::Number, false, false, limits.min, limits.max};
 }
 
-TaskParameter whole(const char* name, const char* standard, const char* help, double min, double max) {
-  return {name, "1", standard, help, Kind::WholeNumber, false, false, min, max};
+TaskParameter whole(const char* name, const char* standard, const char* help, const Limits& limits) {
+  return {name, "1", standard, help, Kind::WholeNumber, false, false, limits.min, limits.max};
 }
 
 TaskParameter place(const char* name, bool is_required, const char* help) {
@@ -33,9 +33,9 @@ TaskParameter place(const char* name, bool is_required, const char* help) {
 /// The parameters that all ways have.
 std::vector<TaskParameter> withWayParameters(std::vector<TaskParameter> own, bool with_width = true) {
   own.push_back({"without", "", "", "a class, Movable or Static: leave these objects out", Kind::Class, false, true});
-  if (with_width) own.push_back(number("width", "m", "0.6", "free width that is needed", 0, 20));
-  own.push_back(number("maxSlope", "1", "0.12", "largest slope, rise over run", 0, 10));
-  own.push_back(number("maxStep", "m", "0.06", "height of a kerb that can be crossed", 0, 2));
+  if (with_width) own.push_back(number("width", "m", "0.6", "free width that is needed", kWidth_m));
+  own.push_back(number("maxSlope", "1", "0.12", "largest slope, rise over run", kMaxSlope));
+  own.push_back(number("maxStep", "m", "0.06", "height of a kerb that can be crossed", kMaxStep_m));
   return own;
 }
 
@@ -177,36 +177,19 @@ std::vector<Eigen::Vector2d> rectanglesOf(const GridFrame& frame, const std::vec
   return corners;
 }
 
-/// What a cell of a cost map is.
-const char* kindOfCell(const PassableGrid& grid, std::uint32_t cell) {
-  switch (grid.closure[cell]) {
-    case Closure::Open:
-      return isBesideStep(grid, cell) ? "step" : "free";
-    case Closure::Obstacle:
-      return "thing";
-    case Closure::TooSteep:
-      return "too steep";
-    case Closure::TooNarrow:
-      return "too narrow";
-    case Closure::Unobserved:
-      return "unobserved";
-  }
-  return "";
-}
-
 TaskAnswer runCostMap(const TaskContext& context, const TaskValues& values) {
-  const PassableGrid grid = passableIn(context.map, wayRequestOf(values));
+  const PassableGrid grid = costMapGridIn(context.map, wayRequestOf(values));
   TaskAnswer answer;
   const double cell_m2 = grid.frame.cell_m * grid.frame.cell_m;
-  for (const std::string_view kind : {"free", "thing", "step", "too steep", "too narrow", "unobserved"}) {
+  for (const CellKind kind : {CellKind::Free, CellKind::Thing, CellKind::Step, CellKind::TooSteep, CellKind::TooNarrow,
+                              CellKind::Unobserved}) {
     std::vector<std::uint8_t> marked(grid.frame.size(), 0);
-    for (std::uint32_t cell = 0; cell < grid.frame.size(); ++cell)
-      marked[cell] = kindOfCell(grid, cell) == kind ? 1 : 0;
+    for (std::uint32_t cell = 0; cell < grid.frame.size(); ++cell) marked[cell] = kindOf(grid, cell) == kind ? 1 : 0;
     const auto count = std::count(marked.begin(), marked.end(), 1);
     if (count == 0) continue;
     TaskShape shape;
-    if (kind != "unobserved") shape = {TaskShape::Kind::Area, rectanglesOf(grid.frame, marked)};
-    answer.rows.push_back({{std::string(kind), static_cast<double>(count) * cell_m2}, std::move(shape)});
+    if (kind != CellKind::Unobserved) shape = {TaskShape::Kind::Area, rectanglesOf(grid.frame, marked)};
+    answer.rows.push_back({{std::string(nameOf(kind)), static_cast<double>(count) * cell_m2}, std::move(shape)});
   }
   return answer;
 }
@@ -217,7 +200,7 @@ Task routeTask() {
           withWayParameters({place("from", true, "X,Y or an object"),
                              place("to", true, "X,Y or an object"),
                              {"near", "", "", "a class: the way stays near such objects", Kind::Class},
-                             whole("alternatives", "1", "number of routes to look for", 1, 9)}),
+                             whole("alternatives", "1", "number of routes to look for", kAlternatives)}),
           {{"route", "1", "number, best first"},
            {"length", "m", "of the way"},
            {"cost", "1", "a metre costs 1, more on slopes, beside things and far from what it should stay near"},
@@ -234,8 +217,8 @@ Task reachTask() {
   return {"reach",
           "What is within some minutes' walk?",
           withWayParameters({place("from", true, "X,Y or an object"),
-                             number("minutes", "min", "5", "largest duration of the walk", 0, 600),
-                             number("speed", "m/s", "1.2", "walking speed", 0.01, 100)}),
+                             number("minutes", "min", "5", "largest duration of the walk", {0, 600}),
+                             number("speed", "m/s", "1.2", "walking speed", {0.01, 100})}),
           {{"object", "IRI", "what is reached"},
            {"class", "text", "its class"},
            {"x", "m", "position in the map frame"},
@@ -253,11 +236,11 @@ Task searchTask() {
           withWayParameters(
               {{"for", "", "", "the class", Kind::Class, true},
                place("from", false, "X,Y or an object; without it where the last scan was taken"),
-               number("budget", "m", "0", "largest length of the walk; 0: no limit", 0, 1e6),
-               whole("stops", "10", "largest number of stops", 1, 100),
-               number("view", "m", "10", "distance within which an object is recognised", 1, 100),
+               number("budget", "m", "0", "largest length of the walk; 0: no limit", {0, 1e6}),
+               whole("stops", "10", "largest number of stops", kTourStops),
+               number("view", "m", "10", "distance within which an object is recognised", kView_m),
                number("detection", "1", "0.8", "share of the objects of the class in view of a scan that the map holds",
-                      0, 1),
+                      kDetection),
                {"unobserved", "", "false", "true: the walk may cross ground that was not observed", Kind::Flag}}),
           {{"stop", "1", "number in the tour"},
            {"x", "m", "position in the map frame"},

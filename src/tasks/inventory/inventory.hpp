@@ -30,6 +30,11 @@ struct InventoryItem {
   std::vector<Eigen::Vector2d> line = {};  ///< of rows and ways [m, map]
 };
 
+/// Whether it is a parking row: then `count` tells its vehicles.
+inline bool isRow(const InventoryItem& item) {
+  return item.kind == "ParkingRow";
+}
+
 /// A street by its name and course [m, map].
 struct Street {
   std::string name;

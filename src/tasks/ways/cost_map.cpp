@@ -20,13 +20,51 @@ std::string quoted(const std::string& text) {
   return quoted + '"';
 }
 
-char greyOf(const PassableGrid& grid, std::uint32_t cell) {
-  const Closure closure = grid.closure[cell];
-  if (closure == Closure::Unobserved) return kUnknown;
-  return closure != Closure::Open || isBesideStep(grid, cell) ? kOccupied : kFree;
+char greyOf(CellKind kind) {
+  if (kind == CellKind::Unobserved) return kUnknown;
+  return kind == CellKind::Free ? kFree : kOccupied;
 }
 
 }  // namespace
+
+const char* nameOf(CellKind kind) {
+  switch (kind) {
+    case CellKind::Free:
+      return "free";
+    case CellKind::Thing:
+      return "thing";
+    case CellKind::Step:
+      return "step";
+    case CellKind::TooSteep:
+      return "too steep";
+    case CellKind::TooNarrow:
+      return "too narrow";
+    case CellKind::Unobserved:
+      return "unobserved";
+  }
+  return "";
+}
+
+CellKind kindOf(const PassableGrid& grid, std::uint32_t cell) {
+  switch (grid.closure[cell]) {
+    case Closure::Open:
+      return isBesideStep(grid, cell) ? CellKind::Step : CellKind::Free;
+    case Closure::Obstacle:
+      return CellKind::Thing;
+    case Closure::TooSteep:
+      return CellKind::TooSteep;
+    case Closure::TooNarrow:
+      return CellKind::TooNarrow;
+    case Closure::Unobserved:
+      break;
+  }
+  return CellKind::Unobserved;
+}
+
+PassableGrid costMapGridIn(const mapping::MapReader& map, WayRequest request) {
+  request.params.width_m = 0;
+  return passableIn(map, request);
+}
 
 bool isBesideStep(const PassableGrid& grid, std::uint32_t cell) {
   const int x = grid.frame.columnOf(cell), y = grid.frame.rowOf(cell);
@@ -43,7 +81,7 @@ CostMap costMapOf(const PassableGrid& grid, const std::string& image_name) {
   CostMap map;
   map.image = "P5\n" + std::to_string(frame.columns) + " " + std::to_string(frame.rows) + "\n255\n";
   for (int row = frame.rows - 1; row >= 0; --row)
-    for (int column = 0; column < frame.columns; ++column) map.image += greyOf(grid, frame.index(column, row));
+    for (int column = 0; column < frame.columns; ++column) map.image += greyOf(kindOf(grid, frame.index(column, row)));
   std::array<char, 256> text{};
   std::snprintf(
       text.data(), text.size(),
