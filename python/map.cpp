@@ -239,6 +239,7 @@ void bindMaps(py::module_& module) {
           py::arg("name"), "The same as explain(name), in English prose.")
       .def("__repr__", [](const Map& map) { return "<cluxel.Map " + map.file().string() + ">"; });
   bindChanges(module, map);
+  bindTasks(module, map);
   bindBuild(module);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The library in one header: build, open, query, update and explain semantic maps of laser scans.
+// The library in one header: build, open, ask, update and explain semantic maps of laser scans.
 #pragma once
 
 #include <string_view>
@@ -7,8 +7,11 @@
 #include "cluxel/answer.hpp"
 #include "cluxel/error.hpp"
 #include "cluxel/export.hpp"
+#include "cluxel/ground_ways.hpp"
+#include "cluxel/inventory_item.hpp"
 #include "cluxel/map.hpp"
 #include "cluxel/object.hpp"
+#include "cluxel/object_search.hpp"
 #include "cluxel/point_cloud.hpp"
 #include "cluxel/progress.hpp"
 #include "cluxel/term.hpp"

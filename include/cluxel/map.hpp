@@ -16,7 +16,10 @@
 #include "cluxel/answer.hpp"
 #include "cluxel/change.hpp"
 #include "cluxel/export.hpp"
+#include "cluxel/ground_ways.hpp"
+#include "cluxel/inventory_item.hpp"
 #include "cluxel/object.hpp"
+#include "cluxel/object_search.hpp"
 #include "cluxel/point_cloud.hpp"
 #include "cluxel/progress.hpp"
 #include "cluxel/term.hpp"
@@ -86,8 +89,8 @@ struct MapSummary {
 ///
 /// Thread-safe: any number of threads may call its functions at once. Each call reads one consistent state, the newest
 /// commit at its begin, also when another thread or process writes. The const functions never wait for one that writes.
-/// query() and objects() run in parallel; summary(), clouds(), points() and explain() wait for each other. points() and
-/// explain() keep what they read until the map changes: about 1 KB a cluxel. Functions that write wait for each other.
+/// summary(), clouds(), points() and explain() wait for each other, all others run in parallel. points() and explain()
+/// keep what they read until the map changes: about 1 KB a cluxel. Functions that write wait for each other.
 ///
 /// Callbacks (ProgressSink and `poll`) may call all const functions, also of the map that is being written: they see
 /// the last commit. A function that writes a map throws Error (InvalidArgument) in a callback of one that writes the
@@ -159,6 +162,16 @@ class CLUXEL_API Map {
   /// Those of a class or its subclasses, named "Tree", "clx:Tree" or by IRI. Numbers are those of objects(). NotFound
   /// when the ontology has no such class; InvalidArgument for a class whose things are no objects, such as ways.
   std::vector<Object> objects(std::string_view class_name) const;
+
+  /// Lists and measures street furniture, trees, parking rows and sidewalks, without what later scans show to be gone.
+  /// NotFound for an unknown class; InvalidArgument for one whose things are no objects; InputError for a faulty file
+  /// of streets. Cost: the regions of the map in which something is listed.
+  Inventory inventory(const InventoryOptions& options = {}) const;
+  /// Plans a walk on which a further object of the class is likely seen soon, and tells which the map holds. NotFound
+  /// for an unknown class or place, and for a start without open ground within 2 m; InvalidArgument as for objects(),
+  /// and for a file of places that says nothing about the class. Cost: the points of the map, then for each stop the
+  /// cells in view of all possible stops.
+  SearchTour search(std::string_view class_name, const SearchOptions& options = {}) const;
 
   /// The scans, sorted by id.
   std::vector<Cloud> clouds() const;

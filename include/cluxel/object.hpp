@@ -15,6 +15,11 @@ struct Position {
   double x = 0, y = 0, z = 0;
 };
 
+/// A position seen from above, in the map frame [m].
+struct GroundPosition {
+  double x = 0, y = 0;
+};
+
 /// Where something lies and how large it is, rounded to millimetres.
 struct Extent {
   Position centroid;              ///< mean of its points

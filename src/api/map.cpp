@@ -3,14 +3,12 @@
 #include "cluxel/map.hpp"
 
 #include <algorithm>
-#include <mutex>
 #include <optional>
 #include <thread>
 
 #include "api/answer_data.hpp"
 #include "api/change_values.hpp"
-#include "api/guarded_call.hpp"
-#include "api/kept_map.hpp"
+#include "api/map_impl.hpp"
 #include "api/object_query.hpp"
 #include "api/point_query.hpp"
 #include "base/installation/data_home.hpp"
@@ -30,49 +28,6 @@ namespace cluxel {
 std::string_view version() {
   return CLUXEL_VERSION;
 }
-
-struct Map::Impl {
-  explicit Impl(const std::filesystem::path& map_file) : file(map_file), kept(file) {}
-
-  /// What `read` gives for the newest state. Other readers wait, writers do not.
-  template <typename Read>
-  auto reading(const Read& read) {
-    return guarded([&] {
-      KeptMap& mine = kept.get();
-      const std::lock_guard lock(mine.reading_mutex);
-      return read(mine.map.reader());
-    });
-  }
-  rdf::QuadReader newestQuads() const {
-    return guarded([&] { return kept.get().map.quads(); });
-  }
-  /// Runs `write` when no other thread writes through this object; `write` takes the sink of its callbacks.
-  template <typename Write>
-  auto writing(ProgressSink& caller, const Write& write) {
-    WritingCall call(file, caller);
-    return guarded(
-        [&] {
-          std::unique_lock lock(kept.get().writing_mutex, std::defer_lock);
-          // Two calls whose callbacks write each other's map would wait for each other.
-          if (!call.isInCallback())
-            lock.lock();
-          else if (!lock.try_lock())
-            throw Error(ErrorKind::StoreUnavailable,
-                        file.string() + ": another thread is writing this map; callbacks do not wait for it");
-          forget();  // the pages that it keeps can be used again once there is a newer commit
-          return write(call);
-        },
-        &call);
-  }
-  void forget() {
-    KeptMap& mine = kept.get();
-    const std::lock_guard lock(mine.reading_mutex);
-    mine.map.release();
-  }
-
-  const std::filesystem::path file;
-  const KeptMapOfProcess kept;
-};
 
 namespace {
 

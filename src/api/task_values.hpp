@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// Answers of tasks as values of the facade.
+#pragma once
+
+#include <string>
+
+#include "cluxel/ground_ways.hpp"
+#include "cluxel/inventory_item.hpp"
+#include "cluxel/object_search.hpp"
+#include "mapping/map_reader.hpp"
+
+namespace cluxel {
+
+/// These throw as the functions of Map.
+Inventory inventoryIn(const mapping::MapReader& map, const InventoryOptions& options);
+SearchTour searchIn(const mapping::MapReader& map, const std::string& class_name, const SearchOptions& options);
+
+}  // namespace cluxel
