@@ -16,6 +16,7 @@ _Column = Any  # an array of int64, float64 or int and None, or a list of str an
 
 __version__: str
 LABELS: tuple[str, ...]
+GROUND_KINDS: tuple[str, ...]
 
 class Diagnostic(NamedTuple):
     severity: Literal["error", "warning"]
@@ -236,6 +237,51 @@ class Inventory:
     @property
     def notes(self) -> list[str]: ...
 
+class Route:
+    @property
+    def line(self) -> npt.NDArray[np.float64]: ...
+    @property
+    def length_m(self) -> float: ...
+    @property
+    def cost(self) -> float: ...
+    @property
+    def climb_m(self) -> float: ...
+    @property
+    def steepest(self) -> float: ...
+    @property
+    def highest_step_m(self) -> float: ...
+    @property
+    def narrowest_m(self) -> Optional[float]: ...
+
+class Barrier:
+    @property
+    def kind(self) -> Literal["unobserved", "thing", "too steep", "too narrow", "step"]: ...
+    @property
+    def object(self) -> Optional[str]: ...
+    @property
+    def at(self) -> npt.NDArray[np.float64]: ...
+    @property
+    def length_m(self) -> float: ...
+    @property
+    def measured(self) -> Optional[float]: ...
+    @property
+    def text(self) -> str: ...
+
+class Routes:
+    @property
+    def routes(self) -> list[Route]: ...
+    @property
+    def barriers(self) -> list[Barrier]: ...
+    def __bool__(self) -> bool: ...
+
+class CostMap:
+    @property
+    def origin(self) -> npt.NDArray[np.float64]: ...
+    @property
+    def cell_m(self) -> float: ...
+    @property
+    def cells(self) -> npt.NDArray[np.uint8]: ...
+
 class KnownObject:
     @property
     def iri(self) -> str: ...
@@ -320,6 +366,31 @@ class Map:
     ) -> MapChanges: ...
     def objects(self, class_name: Optional[str] = None) -> list[Object]: ...
     def inventory(self, kinds: _Words = ..., *, streets: Optional[_Path] = None) -> Inventory: ...
+    def routes(
+        self,
+        start: _Place,
+        goal: _Place,
+        *,
+        width_m: float = 0.6,
+        max_slope: float = 0.12,
+        max_step_m: float = 0.06,
+        clearance_m: float = 2.0,
+        cell_m: float = 0.25,
+        without: _Words = ...,
+        with_gone: bool = False,
+        near: Optional[str] = None,
+        alternatives: int = 1,
+    ) -> Routes: ...
+    def cost_map(
+        self,
+        *,
+        max_slope: float = 0.12,
+        max_step_m: float = 0.06,
+        clearance_m: float = 2.0,
+        cell_m: float = 0.25,
+        without: _Words = ...,
+        with_gone: bool = False,
+    ) -> CostMap: ...
     def search(
         self,
         class_name: str,

@@ -240,6 +240,7 @@ void bindMaps(py::module_& module) {
       .def("__repr__", [](const Map& map) { return "<cluxel.Map " + map.file().string() + ">"; });
   bindChanges(module, map);
   bindTasks(module, map);
+  bindWays(module, map);
   bindBuild(module);
 }
 

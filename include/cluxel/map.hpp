@@ -167,6 +167,14 @@ class CLUXEL_API Map {
   /// NotFound for an unknown class; InvalidArgument for one whose things are no objects; InputError for a faulty file
   /// of streets. Cost: the regions of the map in which something is listed.
   Inventory inventory(const InventoryOptions& options = {}) const;
+  /// Finds ways over the ground from `start` to `goal`, each moved to the nearest open ground within 2 m, or tells what
+  /// closes the way. A further way shares less than 70 % of its cells with the surroundings of those before. NotFound
+  /// for an unknown class or object, a place without open ground near it, and when the map holds nothing of the class
+  /// `options.near`. Cost: the points of the map, and for each way its cells.
+  Routes routes(const Place& start, const Place& goal, const RouteOptions& options = {}) const;
+  /// The ground as a grid for the navigation software of a robot, which adds the robot's width. NotFound for an unknown
+  /// class. Cost: the points of the map.
+  CostMap costMap(const GroundOptions& options = {}) const;
   /// Plans a walk on which a further object of the class is likely seen soon, and tells which the map holds. NotFound
   /// for an unknown class or place, and for a start without open ground within 2 m; InvalidArgument as for objects(),
   /// and for a file of places that says nothing about the class. Cost: the points of the map, then for each stop the

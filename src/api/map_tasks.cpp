@@ -9,6 +9,14 @@ Inventory Map::inventory(const InventoryOptions& options) const {
   return impl_->readingAlone([&](const mapping::MapReader& map) { return inventoryIn(map, options); });
 }
 
+Routes Map::routes(const Place& start, const Place& goal, const RouteOptions& options) const {
+  return impl_->readingAlone([&](const mapping::MapReader& map) { return routesIn(map, start, goal, options); });
+}
+
+CostMap Map::costMap(const GroundOptions& options) const {
+  return impl_->readingAlone([&](const mapping::MapReader& map) { return costMapIn(map, options); });
+}
+
 SearchTour Map::search(std::string_view class_name, const SearchOptions& options) const {
   return impl_->readingAlone(
       [&](const mapping::MapReader& map) { return searchIn(map, std::string(class_name), options); });

@@ -13,6 +13,8 @@ namespace cluxel {
 
 /// These throw as the functions of Map.
 Inventory inventoryIn(const mapping::MapReader& map, const InventoryOptions& options);
+Routes routesIn(const mapping::MapReader& map, const Place& start, const Place& goal, const RouteOptions& options);
+CostMap costMapIn(const mapping::MapReader& map, const GroundOptions& options);
 SearchTour searchIn(const mapping::MapReader& map, const std::string& class_name, const SearchOptions& options);
 
 }  // namespace cluxel

@@ -11,6 +11,7 @@
 
 namespace cluxel {
 
+/// Not checked.
 tasks::WayRequest wayRequestOf(const GroundOptions& options);
 /// The shortest text that reads back the same.
 std::string exactText(double number);
