@@ -25,6 +25,7 @@ void bindMaps(py::module_& module);
 void bindChanges(py::module_& module, py::class_<Map>& map);
 void bindTasks(py::module_& module, py::class_<Map>& map);
 void bindWays(py::module_& module, py::class_<Map>& map);
+void bindVisits(py::module_& module, py::class_<Map>& map);
 
 /// An immutable tuple type with named fields, of the module `cluxel`.
 py::object namedTuple(py::module_& module, const char* name, const char* fields, const char* doc);

@@ -241,6 +241,7 @@ void bindMaps(py::module_& module) {
   bindChanges(module, map);
   bindTasks(module, map);
   bindWays(module, map);
+  bindVisits(module, map);
   bindBuild(module);
 }
 

@@ -15,6 +15,7 @@
 #include "cluxel/point_cloud.hpp"
 #include "cluxel/progress.hpp"
 #include "cluxel/term.hpp"
+#include "cluxel/visit_changes.hpp"
 
 namespace cluxel {
 

@@ -23,6 +23,7 @@
 #include "cluxel/point_cloud.hpp"
 #include "cluxel/progress.hpp"
 #include "cluxel/term.hpp"
+#include "cluxel/visit_changes.hpp"
 
 namespace cluxel {
 
@@ -180,6 +181,12 @@ class CLUXEL_API Map {
   /// and for a file of places that says nothing about the class. Cost: the points of the map, then for each stop the
   /// cells in view of all possible stops.
   SearchTour search(std::string_view class_name, const SearchOptions& options = {}) const;
+
+  /// What vanished, appeared and moved between the visits to the place, and the states of all objects but ground.
+  /// InvalidArgument when a time is none, or when one side of `options.since` has no scan with a time and a pose. Cost:
+  /// the points and cluxels of the map, region by region, each with the scans that reach it. Memory: that of a region
+  /// and of a scan, and of what changed.
+  SiteChanges changes(const VisitOptions& options = {}) const;
 
   /// The scans, sorted by id.
   std::vector<Cloud> clouds() const;

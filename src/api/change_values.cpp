@@ -24,10 +24,14 @@ std::map<ContentHash, std::string> classNames(const std::vector<mapping::ObjectM
 
 }  // namespace
 
+unsigned threadCountOf(unsigned threads) {
+  return threads > 0 ? threads : std::max(1U, std::thread::hardware_concurrency());
+}
+
 mapping::ChangeParams changeParams(const ChangeOptions& options) {
   if (options.batch_points == 0) throw Error(ErrorKind::InvalidArgument, "batch_points: write a number above 0, not 0");
   mapping::ChangeParams params;
-  params.threads = options.threads > 0 ? options.threads : std::max(1U, std::thread::hardware_concurrency());
+  params.threads = threadCountOf(options.threads);
   params.batch_points = options.batch_points;
   params.dry_run = options.dry_run;
   return params;

@@ -7,6 +7,8 @@
 
 namespace cluxel {
 
+/// One per processor for 0.
+unsigned threadCountOf(unsigned threads);
 /// Throws Error (InvalidArgument) for a batch of no points.
 mapping::ChangeParams changeParams(const ChangeOptions& options);
 /// Throws Error (InvalidArgument) when the matrix is no rigid motion.

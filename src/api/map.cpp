@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <optional>
-#include <thread>
 
 #include "api/answer_data.hpp"
 #include "api/change_values.hpp"
@@ -40,7 +39,7 @@ void buildFile(const std::vector<std::filesystem::path>& scans, const std::files
                                                             .model = options.model},
                                                            DataHome::find(options.home));
   mapping::BuildParams params;
-  params.threads = options.threads > 0 ? options.threads : std::max(1U, std::thread::hardware_concurrency());
+  params.threads = threadCountOf(options.threads);
   params.batch_points = options.batch_points;
   params.force = options.force;
   params.refine_poses = options.refine_poses;

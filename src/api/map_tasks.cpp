@@ -22,4 +22,8 @@ SearchTour Map::search(std::string_view class_name, const SearchOptions& options
       [&](const mapping::MapReader& map) { return searchIn(map, std::string(class_name), options); });
 }
 
+SiteChanges Map::changes(const VisitOptions& options) const {
+  return impl_->readingAlone([&](const mapping::MapReader& map) { return changesIn(map, options); });
+}
+
 }  // namespace cluxel

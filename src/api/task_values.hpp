@@ -7,6 +7,7 @@
 #include "cluxel/ground_ways.hpp"
 #include "cluxel/inventory_item.hpp"
 #include "cluxel/object_search.hpp"
+#include "cluxel/visit_changes.hpp"
 #include "mapping/map_reader.hpp"
 
 namespace cluxel {
@@ -16,5 +17,6 @@ Inventory inventoryIn(const mapping::MapReader& map, const InventoryOptions& opt
 Routes routesIn(const mapping::MapReader& map, const Place& start, const Place& goal, const RouteOptions& options);
 CostMap costMapIn(const mapping::MapReader& map, const GroundOptions& options);
 SearchTour searchIn(const mapping::MapReader& map, const std::string& class_name, const SearchOptions& options);
+SiteChanges changesIn(const mapping::MapReader& map, const VisitOptions& options);
 
 }  // namespace cluxel
