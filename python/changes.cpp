@@ -3,6 +3,7 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <array>
 #include <map>
 #include <variant>
 
@@ -62,31 +63,55 @@ MapChanges retract(Map& map, const std::vector<std::string>& clouds, unsigned th
                  [&](ProgressSink& sink) { return map.retract(clouds, options, sink); });
 }
 
+/// `what` says whose it is.
+std::array<double, 16> rowByRow(const Matrix& matrix, const std::string& what) {
+  if (matrix.ndim() != 2 || matrix.shape(0) != 4 || matrix.shape(1) != 4)
+    throw Error(ErrorKind::InvalidArgument, what + " has another shape than (4, 4)");
+  std::array<double, 16> numbers{};
+  std::copy_n(matrix.data(), numbers.size(), numbers.begin());
+  return numbers;
+}
+
 MapChanges repose(Map& map, const std::map<std::string, Matrix>& poses, unsigned threads,
                   std::optional<std::uint64_t> batch_points, bool dry_run, py::object progress, py::object note) {
   std::vector<CloudPose> given;
   for (const auto& [cloud, matrix] : poses) {
-    if (matrix.ndim() != 2 || matrix.shape(0) != 4 || matrix.shape(1) != 4)
-      throw Error(ErrorKind::InvalidArgument, "the pose for cloud " + cloud + " has another shape than (4, 4)");
-    CloudPose pose{cloud, {}};
-    std::copy_n(matrix.data(), pose.T_map_sensor.size(), pose.T_map_sensor.begin());
-    given.push_back(std::move(pose));
+    given.push_back({cloud, rowByRow(matrix, "the pose for cloud " + cloud)});
   }
   const ChangeOptions options{{}, threads, batch_points, dry_run};
   return changed(std::move(progress), std::move(note),
                  [&](ProgressSink& sink) { return map.repose(given, options, sink); });
 }
 
-Map merge(const std::vector<std::filesystem::path>& maps, const std::filesystem::path& target, unsigned threads,
-          std::optional<std::uint64_t> batch_points, py::object progress, py::object note) {
-  const ChangeOptions options{{}, threads, batch_points, false};
-  try {
-    return changed(std::move(progress), std::move(note),
-                   [&](ProgressSink& sink) { return Map::merge(maps, target, options, sink); });
-  } catch (const Error& error) {
-    if (error.remedy() != Remedy::ReplaceMap) throw;  // build() takes force, merge() does not
-    throw Error(error.kind(), std::string(error.what()) + "; merge into another file, or remove this one first");
-  }
+using OptionalMatrix = std::optional<Matrix>;
+
+MergeOptions mergeOptionsOf(const OptionalMatrix& T_first_second, const std::optional<std::filesystem::path>& use,
+                            bool force, bool dry_run, unsigned threads, std::optional<std::uint64_t> batch_points) {
+  MergeOptions options;
+  options.threads = threads;
+  options.batch_points = batch_points;
+  options.use = use.value_or(std::filesystem::path());
+  options.force = force;
+  options.dry_run = dry_run;
+  if (T_first_second) options.T_first_second = rowByRow(*T_first_second, "T_first_second");
+  return options;
+}
+
+Map merge(const std::vector<std::filesystem::path>& maps, const std::filesystem::path& target,
+          const OptionalMatrix& T_first_second, const std::optional<std::filesystem::path>& use, bool force,
+          unsigned threads, std::optional<std::uint64_t> batch_points, py::object progress, py::object note) {
+  const MergeOptions options = mergeOptionsOf(T_first_second, use, force, false, threads, batch_points);
+  return changed(std::move(progress), std::move(note),
+                 [&](ProgressSink& sink) { return Map::merge(maps, target, options, sink); });
+}
+
+MapChanges mergeInto(const std::vector<std::filesystem::path>& maps, const std::filesystem::path& target,
+                     const OptionalMatrix& T_first_second, const std::optional<std::filesystem::path>& use, bool force,
+                     bool dry_run, unsigned threads, std::optional<std::uint64_t> batch_points, py::object progress,
+                     py::object note) {
+  const MergeOptions options = mergeOptionsOf(T_first_second, use, force, dry_run, threads, batch_points);
+  return changed(std::move(progress), std::move(note),
+                 [&](ProgressSink& sink) { return Map::mergeInto(maps, target, options, sink); });
 }
 
 void bindValues(py::module_& module) {
@@ -129,9 +154,21 @@ void bindChanges(py::module_& module, py::class_<Map>& map) {
           py::arg("note") = py::none(),
           "Gives scans other poses, batch by batch. poses: dict from cloud, named as in retract(), to the pose of the\n"
           "sensor in the map, an array of shape (4, 4) [m]. Gives MapChanges.");
-  module.def("merge", &merge, py::arg("maps"), py::arg("target"), py::kw_only(), py::arg("threads") = 0U,
+  module.def("merge", &merge, py::arg("maps"), py::arg("target"), py::kw_only(), py::arg("T_first_second") = py::none(),
+             py::arg("use") = py::none(), py::arg("force") = false, py::arg("threads") = 0U,
              py::arg("batch_points") = py::none(), py::arg("progress") = py::none(), py::arg("note") = py::none(),
-             "Merges maps, all in the frame of the first, into the new file `target`, and opens it.");
+             "Merges maps, all in the frame of the first, into the new file `target`, and opens it.\n\n"
+             "T_first_second: for two maps, takes points of the second to the frame of the first: an array of shape\n"
+             "(4, 4), a rigid motion [m]. Given, also as the identity, it allows other frames.\n"
+             "use: the map of them whose ontology, rules and model are used; None: they must agree.\n"
+             "force: replaces another file that is there.");
+  module.def(
+      "merge_into", &mergeInto, py::arg("maps"), py::arg("target"), py::kw_only(),
+      py::arg("T_first_second") = py::none(), py::arg("use") = py::none(), py::arg("force") = false,
+      py::arg("dry_run") = false, py::arg("threads") = 0U, py::arg("batch_points") = py::none(),
+      py::arg("progress") = py::none(), py::arg("note") = py::none(),
+      "The same as merge(); tells what became of the objects of the maps, as MapChanges. dry_run: tells what it\n"
+      "would make, and writes no target.");
 }
 
 }  // namespace cluxel::python

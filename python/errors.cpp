@@ -59,10 +59,9 @@ const char* remedyText(Remedy remedy) {
     case Remedy::NameLoadFile:
       return "this module loads no file; 'cluxel update --load IRI=FILE' does";
     case Remedy::ChooseInputs:
-      return "this module merges maps of the same inputs only; 'cluxel merge --use MAP' names that map";
+      return "pass use=MAP to name that map";
     case Remedy::NameTransform:
-      return "this module merges maps in one frame only; 'cluxel merge --transform FILE' names the matrix from the "
-             "second map to the first";
+      return "pass T_first_second=MATRIX, which takes the second map to the first";
     case Remedy::MoveScans:
       return "Map.repose() gives scans of a map other poses";
     case Remedy::MergeMaps:

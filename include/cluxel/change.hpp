@@ -21,6 +21,17 @@ struct ChangeOptions {
   bool dry_run = false;  ///< compute what would change, and write nothing
 };
 
+struct MergeOptions {
+  unsigned threads = 0;                            ///< as in ChangeOptions
+  std::optional<std::uint64_t> batch_points = {};  ///< as in ChangeOptions
+  /// Of two maps: takes points of the second to the frame of the first, 4x4 row by row, translation in metres; a rigid
+  /// motion within 1e-6. Given, also as the identity, it allows another map origin and coordinate system.
+  std::optional<std::array<double, 16>> T_first_second = {};
+  std::filesystem::path use = {};  ///< the map of them whose ontology, rules and model are used; empty: all agree
+  bool force = false;              ///< replace another file that is there
+  bool dry_run = false;            ///< of mergeInto(): compute what it would make, and write nothing there
+};
+
 /// Another pose of a scan that is in the map.
 struct CloudPose {
   std::string cloud;                      ///< its id (four digits or more), source path or file name

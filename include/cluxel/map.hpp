@@ -149,9 +149,15 @@ class CLUXEL_API Map {
   MapChanges repose(const std::vector<CloudPose>& poses, const ChangeOptions& options, ProgressSink& sink);
   /// Merges maps, all in the frame of the first, into the new file `target`, and opens it: the map that build() makes
   /// from all scans. A `target` that is the merge of these maps already is left as it is. InvalidArgument when another
-  /// file is there, inputs differ, or `options.dry_run` is set. InputError when a scan has two poses.
+  /// file is there and `options.force` is not set, when inputs, map origins or coordinate systems differ and the
+  /// options do not say what to do, when `options.use` is none of the maps, and for `options.dry_run`. InputError when
+  /// a scan has two poses.
   static Map merge(const std::vector<std::filesystem::path>& maps, const std::filesystem::path& target,
-                   const ChangeOptions& options, ProgressSink& sink);
+                   const MergeOptions& options, ProgressSink& sink);
+  /// The same; tells what became of the objects of the maps instead of opening the result. A dry run works on a copy
+  /// beside `target`, which it removes.
+  static MapChanges mergeInto(const std::vector<std::filesystem::path>& maps, const std::filesystem::path& target,
+                              const MergeOptions& options, ProgressSink& sink);
 
   /// Explains an object or a primitive named by its IRI (also as "map:object/…"), by "object/…" or "primitive/…", by at
   /// least four leading digits of its hash, or an object by its number ("#17"). Applies the map's rules again to the

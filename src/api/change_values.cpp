@@ -10,6 +10,7 @@
 #include "mapping/map_reader.hpp"
 #include "rdf/map_iris.hpp"
 #include "scan/poses/pose_files.hpp"
+#include "tasks/merge_request.hpp"
 
 namespace cluxel {
 
@@ -20,6 +21,13 @@ std::map<ContentHash, std::string> classNames(const std::vector<mapping::ObjectM
   std::map<ContentHash, std::string> names;
   for (const mapping::ObjectMembers& object : objects) names.emplace(object.id, class_names.nameOf(object.class_iri));
   return names;
+}
+
+Eigen::Isometry3d motionOf(const std::array<double, 16>& row_by_row) {
+  using RowMajor = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
+  Eigen::Isometry3d motion;
+  motion.matrix() = Eigen::Map<const RowMajor>(row_by_row.data());
+  return motion;
 }
 
 }  // namespace
@@ -38,12 +46,27 @@ mapping::ChangeParams changeParams(const ChangeOptions& options) {
 }
 
 Eigen::Isometry3d poseOf(const CloudPose& pose) {
-  using RowMajor = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
-  Eigen::Isometry3d T_map_sensor;
-  T_map_sensor.matrix() = Eigen::Map<const RowMajor>(pose.T_map_sensor.data());
+  const Eigen::Isometry3d T_map_sensor = motionOf(pose.T_map_sensor);
   if (const auto fault = scan::faultOfPose(T_map_sensor))
     throw Error(ErrorKind::InvalidArgument, "the pose for cloud " + pose.cloud + " " + *fault);
   return T_map_sensor;
+}
+
+MergeRequest mergeRequestOf(const std::vector<std::filesystem::path>& maps, const MergeOptions& options) {
+  MergeRequest request;
+  request.params.change =
+      changeParams({.threads = options.threads, .batch_points = options.batch_points, .dry_run = options.dry_run});
+  request.params.force = options.force;
+  for (const std::filesystem::path& map : maps) request.maps.push_back({map, Eigen::Isometry3d::Identity()});
+  if (options.T_first_second) {
+    Eigen::Isometry3d T_first_second = motionOf(*options.T_first_second);
+    if (const auto fault = scan::faultOfTransform(T_first_second))
+      throw Error(ErrorKind::InvalidArgument, fault->what + "; " + fault->remedy);
+    T_first_second.linear() = scan::nearestRotation(T_first_second.linear());
+    tasks::setTransform(request.maps, T_first_second);
+  }
+  if (!options.use.empty()) request.params.use = tasks::numberAmong(request.maps, options.use);
+  return request;
 }
 
 MapChanges changesOf(const mapping::ChangeReport& report) {

@@ -4,6 +4,7 @@
 
 #include "cluxel/change.hpp"
 #include "mapping/change/map_editor.hpp"
+#include "mapping/change/map_merge.hpp"
 
 namespace cluxel {
 
@@ -13,6 +14,12 @@ unsigned threadCountOf(unsigned threads);
 mapping::ChangeParams changeParams(const ChangeOptions& options);
 /// Throws Error (InvalidArgument) when the matrix is no rigid motion.
 Eigen::Isometry3d poseOf(const CloudPose& pose);
+struct MergeRequest {
+  std::vector<mapping::MapToMerge> maps;
+  mapping::MergeParams params;
+};
+/// Throws Error (InvalidArgument) as changeParams(), and for a transform and a map to be used that do not fit.
+MergeRequest mergeRequestOf(const std::vector<std::filesystem::path>& maps, const MergeOptions& options);
 MapChanges changesOf(const mapping::ChangeReport& report);
 
 }  // namespace cluxel

@@ -202,18 +202,19 @@ MapChanges Map::repose(const std::vector<CloudPose>& poses, const ChangeOptions&
 }
 
 Map Map::merge(const std::vector<std::filesystem::path>& maps, const std::filesystem::path& target,
-               const ChangeOptions& options, ProgressSink& sink) {
-  std::vector<mapping::MapToMerge> parts;
-  for (const std::filesystem::path& map : maps) {
-    requirePath(map, "a map to be merged");
-    parts.push_back({map, Eigen::Isometry3d::Identity()});
-  }
-  requirePath(target, "the merged map");
+               const MergeOptions& options, ProgressSink& sink) {
   if (options.dry_run) throw Error(ErrorKind::InvalidArgument, "dry_run: a merge makes the map that it returns");
-  WritingCall call(target, sink);
-  const mapping::MergeParams params{.change = changeParams(options), .use = std::nullopt, .force = false};
-  guarded([&] { mapping::mergeMaps(parts, target, params, call); }, &call);
+  mergeInto(maps, target, options, sink);
   return open(target);
+}
+
+MapChanges Map::mergeInto(const std::vector<std::filesystem::path>& maps, const std::filesystem::path& target,
+                          const MergeOptions& options, ProgressSink& sink) {
+  for (const std::filesystem::path& map : maps) requirePath(map, "a map to be merged");
+  requirePath(target, "the merged map");
+  const MergeRequest request = mergeRequestOf(maps, options);
+  WritingCall call(target, sink);
+  return guarded([&] { return changesOf(mapping::mergeMaps(request.maps, target, request.params, call)); }, &call);
 }
 
 Explanation Map::explain(const std::string& name) const {

@@ -102,7 +102,7 @@ class ReadingSink : public ProgressSink {
     tryToWrite([&] { map_.retract({clouds.front().id}, options_, silence); });
     tryToWrite([&] { map_.repose({}, options_, silence); });
     tryToWrite([&] { Map::build({"absent.pcd"}, map_.file(), {}); });
-    tryToWrite([&] { Map::merge({map_.file()}, map_.file(), options_, silence); });
+    tryToWrite([&] { Map::merge({map_.file()}, map_.file(), {}, silence); });
   }
   void tryToWrite(const std::function<void()>& write) {
     try {

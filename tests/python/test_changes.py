@@ -58,6 +58,17 @@ def test_merged_maps_are_the_map_of_all_scans(campus, tmp_path):
         parts.append(campus.build(tmp_path / f"{number}.clx", folder).file)
     merged = cluxel.merge(parts, tmp_path / "merged.clx")
     assert canonical(merged) == canonical(campus.map)
+    second = cluxel.open(parts[1])
+    forth = np.eye(4)
+    forth[0, 3] = 64  # four tiles, and exact in binary
+    second.repose({cloud.id: forth @ cloud.T_map_sensor for cloud in second.clouds()})
+    back = np.linalg.inv(forth)
+    moved = cluxel.merge(parts, tmp_path / "moved.clx", T_first_second=back)
+    assert canonical(moved) == canonical(campus.map)
+    with pytest.raises(cluxel.InvalidArgumentError, match="T_first_second has another shape"):
+        cluxel.merge(parts, tmp_path / "none.clx", T_first_second=np.eye(3))
+    with pytest.raises(cluxel.InvalidArgumentError, match="does not scale"):
+        cluxel.merge(parts, tmp_path / "none.clx", T_first_second=np.diag([2, 2, 2, 1]))
 
 
 def test_callbacks_read_the_map_and_may_not_write_it(copied_map):

@@ -90,15 +90,21 @@ def test_hints_can_be_followed_in_python(campus, copied_map, tmp_path):
     campus.build(tmp_path / "other.clx", ontology=ontology)
     with pytest.raises(cluxel.InvalidArgumentError) as raised:
         cluxel.merge([campus.file, tmp_path / "other.clx"], tmp_path / "both.clx")
-    assert "cluxel merge --use" in raised.value.remedy
+    assert "use=MAP" in raised.value.remedy
+    merged = cluxel.merge([campus.file, tmp_path / "other.clx"], tmp_path / "both.clx", use=tmp_path / "other.clx")
+    assert merged.query("ASK { <http://e/Thing> ?p ?o }")
 
 
-def test_a_merge_names_no_argument_that_it_does_not_take(campus, copied_map, tmp_path):
+def test_a_merge_replaces_a_map_by_force_only(campus, copied_map, tmp_path):
     copied_map.retract([copied_map.clouds()[0].id])
     twin = shutil.copy(campus.file, tmp_path / "twin.clx")
-    with pytest.raises(cluxel.InvalidArgumentError, match="exists already; merge into another file") as raised:
+    with pytest.raises(cluxel.InvalidArgumentError, match="exists already") as raised:
         cluxel.merge([campus.file, twin], copied_map.file)
-    assert raised.value.remedy is None
+    assert "force=True" in raised.value.remedy
+    scans = len(copied_map.clouds())
+    assert cluxel.merge_into([campus.file, twin], copied_map.file, force=True, dry_run=True).scans_already_there > 0
+    assert len(copied_map.clouds()) == scans
+    assert len(cluxel.merge([campus.file, twin], copied_map.file, force=True).clouds()) == scans + 1
 
 
 def test_what_is_not_known_is_none(tmp_path):

@@ -13,6 +13,7 @@
 #include "mapping/map_reader.hpp"
 #include "rdf/file/map_check.hpp"
 #include "scan/poses/pose_files.hpp"
+#include "tasks/merge_request.hpp"
 
 namespace cluxel::app {
 
@@ -86,25 +87,14 @@ struct MergeOptions {
   std::size_t listed = 0;
 };
 
-std::optional<std::size_t> numberOf(const fs::path& used, const std::vector<fs::path>& maps) {
-  if (used.empty()) return std::nullopt;
-  for (std::size_t i = 0; i < maps.size(); ++i)
-    if (maps[i] == used || (fs::exists(maps[i]) && fs::exists(used) && fs::equivalent(maps[i], used))) return i;
-  throw Error(ErrorKind::InvalidArgument, "--use " + used.string() + ": is not one of the maps that are merged");
-}
-
 ExitCode merge(const MergeOptions& options, Session& session) {
   std::vector<mapping::MapToMerge> maps;
   for (const fs::path& file : options.maps) maps.push_back({file, Eigen::Isometry3d::Identity()});
-  if (!options.transform.empty()) {
-    if (maps.size() != 2)
-      throw Error(ErrorKind::InvalidArgument, "--transform is for two maps: it takes the second to the first");
-    maps.back().T_first_map = scan::parseTransform(readFile(options.transform), options.transform.string());
-    maps.back().has_transform = true;
-  }
+  if (!options.transform.empty())
+    tasks::setTransform(maps, scan::parseTransform(readFile(options.transform), options.transform.string()));
   mapping::MergeParams params = options.params;
   params.change.threads = session.threadCount();
-  params.use = numberOf(options.use, options.maps);
+  if (!options.use.empty()) params.use = tasks::numberAmong(maps, options.use);
   printChange(options.output, mergeMaps(maps, options.output, params, session.console), params.change, session,
               options.listed);
   return ExitCode::Done;

@@ -110,14 +110,8 @@ std::string shapeOf(const Eigen::Matrix3d& rotation) {
   return text.data();
 }
 
-/// A transform acts over kilometres, where a pose acts over the reach of a sensor.
 void requireRigidTransform(const TextScanner& scanner, const Eigen::Isometry3d& T) {
-  constexpr double kTolerance = 1e-6;  // seven digits after the point give less
-  if (!(offRotation(T.linear()) <= kTolerance))
-    scanner.refuse("the rotation part of the transform is no rotation: " + shapeOf(T.linear()),
-                   "a transform turns and moves a map, it does not scale it; write it with at least seven digits after "
-                   "the point");
-  if (const auto fault = otherFaultOf(T)) scanner.refuse("the transform " + *fault, "write it row by row");
+  if (const auto fault = faultOfTransform(T)) scanner.refuse(fault->what, fault->remedy);
 }
 
 }  // namespace
@@ -127,6 +121,17 @@ std::optional<std::string> faultOfPose(const Eigen::Isometry3d& pose) {
   if (!(offRotation(pose.linear()) <= kRotationTolerance))
     return "has a rotation part whose rows are not of length 1 and at right angles";
   return otherFaultOf(pose);
+}
+
+std::optional<TransformFault> faultOfTransform(const Eigen::Isometry3d& T) {
+  constexpr double kTolerance = 1e-6;  // seven digits after the point give less
+  if (!T.matrix().allFinite()) return TransformFault{"the transform has numbers that are not finite", "write numbers"};
+  if (!(offRotation(T.linear()) <= kTolerance))
+    return TransformFault{
+        "the rotation part of the transform is no rotation: " + shapeOf(T.linear()),
+        "a transform turns and moves a map, it does not scale it; write it with at least seven digits after the point"};
+  if (const auto fault = otherFaultOf(T)) return TransformFault{"the transform " + *fault, "write it row by row"};
+  return std::nullopt;
 }
 
 Eigen::Matrix3d nearestRotation(const Eigen::Matrix3d& matrix) {

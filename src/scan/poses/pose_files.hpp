@@ -44,4 +44,11 @@ Eigen::Matrix3d rotationFromRpy(double roll_rad, double pitch_rad, double yaw_ra
 /// What is wrong with a matrix that should be a rigid motion; nothing when it is one.
 std::optional<std::string> faultOfPose(const Eigen::Isometry3d& pose);
 
+struct TransformFault {
+  std::string what, remedy;
+};
+/// What is wrong with a matrix that takes one map to another. It acts over kilometres, where a pose acts over the reach
+/// of a sensor, so that less rounding passes than in a pose.
+std::optional<TransformFault> faultOfTransform(const Eigen::Isometry3d& T);
+
 }  // namespace cluxel::scan
