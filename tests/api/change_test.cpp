@@ -94,6 +94,8 @@ class ReadingSink : public ProgressSink {
     EXPECT_GT(map_.points(objects.front()).size(), 0U);
     EXPECT_FALSE(map_.explain(objects.front().iri).text.empty());
     EXPECT_TRUE(map_.query("ASK { ?s ?p ?o }").boolean());
+    EXPECT_FALSE(map_.inventory().items.empty());
+    EXPECT_FALSE(map_.costMap({.cell_m = 1}).cells.empty());
     ProgressSink silence;
     Map same = Map::open(map_.file());
     tryToWrite([&] { map_.update("INSERT DATA { <http://a> <http://b> 1 }"); });

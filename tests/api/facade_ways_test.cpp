@@ -2,10 +2,11 @@
 // Routes and cost maps of the facade are those of the tasks.
 #include <gmock/gmock.h>
 
-#include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <map>
 #include <set>
+#include <thread>
 
 #include "api/facade_campus.hpp"
 #include "rdf/map_iris.hpp"
@@ -150,6 +151,21 @@ TEST_F(FacadeWays, ACostMapHasTheGreyValuesOfTheImage) {
       kinds.insert(kind);
     }
   EXPECT_GE(kinds.size(), 3U);
+}
+
+TEST_F(FacadeWays, ManyThreadsAskAtOnce) {
+  const CostMap ground = map().costMap();
+  const double length_m = map().routes(stop(0), stop(1)).routes.at(0).length_m;
+  std::atomic<int> right = 0;
+  std::vector<std::thread> threads;
+  for (int i = 0; i < 4; ++i)
+    threads.emplace_back([&, i] {
+      const bool is_same = i % 2 == 0 ? map().costMap().cells == ground.cells
+                                      : map().routes(stop(0), stop(1)).routes.at(0).length_m == length_m;
+      right += is_same ? 1 : 0;
+    });
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_EQ(right, 4);
 }
 
 TEST_F(FacadeWays, NumbersOutOfRangeAreRefused) {

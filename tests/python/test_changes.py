@@ -127,7 +127,7 @@ def test_a_forked_process_goes_on_with_the_maps_of_its_parent(copied_map):
     writer.start()
     try:
         for _ in range(6):
-            assert in_child(lambda: len(copied_map.objects()) == things) == 0
+            assert in_child(lambda: len(copied_map.objects()) == things and len(copied_map.inventory().items) > 5) == 0
     finally:
         is_over.set()
         writer.join()
