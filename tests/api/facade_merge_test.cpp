@@ -18,6 +18,7 @@ Matrix shiftAlongX(double shift_m) {
   return {1, 0, 0, shift_m, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
 }
 
+/// Canonical texts are compared by ==: the differences that GoogleTest would show of them take too much memory.
 class FacadeMerge : public ::testing::Test {
  protected:
   Map built(const std::vector<fs::path>& scans, const std::string& name, const fs::path& rules = {}) const {
@@ -54,7 +55,7 @@ TEST_F(FacadeMerge, ATransformTakesTheSecondMapToTheFirst) {
   const Map a = built(first, "a.clx");
   Map b = built(rest, "b.clx");
   const std::string whole = mapping::canonicalText(FacadeCampus::shared().map.file());
-  EXPECT_EQ(canonicalMerge({a.file(), b.file()}, {.T_first_second = shiftAlongX(0)}), whole);
+  EXPECT_TRUE(canonicalMerge({a.file(), b.file()}, {.T_first_second = shiftAlongX(0)}) == whole);
   std::vector<CloudPose> moved;
   for (const Cloud& cloud : b.clouds()) {
     moved.push_back({cloud.id, cloud.T_map_sensor});
@@ -62,8 +63,8 @@ TEST_F(FacadeMerge, ATransformTakesTheSecondMapToTheFirst) {
   }
   b.repose(moved, {}, silence);
   const MergeOptions back{.T_first_second = shiftAlongX(-64)};
-  EXPECT_EQ(canonicalMerge({a.file(), b.file()}, back), whole);
-  EXPECT_NE(canonicalMerge({a.file(), b.file()}, {}), whole);
+  EXPECT_TRUE(canonicalMerge({a.file(), b.file()}, back) == whole);
+  EXPECT_FALSE(canonicalMerge({a.file(), b.file()}, {}) == whole);
   EXPECT_THAT(refusalOf({a.file(), b.file(), FacadeCampus::shared().map.file()}, back, Remedy::None),
               ::testing::HasSubstr("two maps"));
   MergeOptions scaled = back;
@@ -84,8 +85,8 @@ TEST_F(FacadeMerge, ChosenInputsAreThoseOfTheResult) {
   EXPECT_THAT(refusalOf({a.file(), b.file()}, {}, Remedy::ChooseInputs), ::testing::HasSubstr("differs from"));
   EXPECT_THAT(refusalOf({a.file(), b.file()}, {.use = whole.file()}, Remedy::None),
               ::testing::HasSubstr("is not one of the maps"));
-  EXPECT_EQ(canonicalMerge({a.file(), b.file()}, {.use = fs::relative(b.file())}),
-            mapping::canonicalText(whole.file()));
+  EXPECT_TRUE(canonicalMerge({a.file(), b.file()}, {.use = fs::relative(b.file())}) ==
+              mapping::canonicalText(whole.file()));
 }
 
 TEST_F(FacadeMerge, ForceReplacesAnotherFileAndADryRunNone) {
@@ -104,7 +105,7 @@ TEST_F(FacadeMerge, ForceReplacesAnotherFileAndADryRunNone) {
   EXPECT_THROW(Map::merge({a.file(), b.file()}, target, {.force = true, .dry_run = true}, silence), Error);
   EXPECT_TRUE(readFile(target) == before);
   const MapChanges done = Map::mergeInto({a.file(), b.file()}, target, {.force = true}, silence);
-  EXPECT_EQ(mapping::canonicalText(target), mapping::canonicalText(FacadeCampus::shared().map.file()));
+  EXPECT_TRUE(mapping::canonicalText(target) == mapping::canonicalText(FacadeCampus::shared().map.file()));
   EXPECT_EQ(planned.scans_added, done.scans_added);
   EXPECT_EQ(planned.objects.size(), done.objects.size());
   EXPECT_EQ(planned.objects_unchanged, done.objects_unchanged);

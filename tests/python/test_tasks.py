@@ -31,8 +31,8 @@ def test_an_inventory_is_that_of_the_program(campus_map):
 
 def test_a_search_is_that_of_the_program(campus_map):
     found = campus_map.search("StreetSign", without="Movable", budget_m=60, max_stops=4)
-    told = json.loads(run("search", campus_map.file, "--for", "StreetSign", "--without", "Movable", "--budget", 60, "--stops", 4,
-                          "--json"))
+    told = json.loads(run("search", campus_map.file, "--for", "StreetSign", "--without", "Movable", "--budget", 60,
+                          "--stops", 4, "--json"))
     assert len(found.stops) == len(told["stops"]) > 0
     for stop, row in zip(found.stops, told["stops"]):
         np.testing.assert_array_equal(stop.at, row["at"])

@@ -13,7 +13,8 @@ from conftest import run
 @pytest.fixture(scope="module")
 def visited(campus, tmp_path_factory):
     folder = tmp_path_factory.mktemp("visited")
-    run("simulate", folder / "scans", "--seed", 5, "--stops", 3, "--size", 50, "--points-per-stop", 20000, "--visits", 2)
+    campus_of_two_visits = ["--seed", 5, "--stops", 3, "--size", 50, "--points-per-stop", 20000, "--visits", 2]
+    run("simulate", folder / "scans", *campus_of_two_visits)
     return campus.build(folder / "visited.clx", folder / "scans")
 
 
