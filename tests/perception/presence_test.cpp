@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <numeric>
+#include <optional>
 #include <random>
 
 namespace cluxel::perception {
@@ -105,6 +106,59 @@ TEST(Presence, OfWhatCameBackHasNoEnd) {
   ASSERT_TRUE(twice.has_value());
   EXPECT_EQ(twice->first_seen_s, 1);
   EXPECT_EQ(twice->seen_empty_s, 0);
+}
+
+/// Within a visit things look different from where the sensor is next.
+TEST(Presence, WithinAVisitMoreMustShowThatAThingLeft) {
+  const auto endAfter = [](double pause_s, std::size_t seen_through) {
+    const std::vector<ScanVotes> history{votes(0, 50, 0), votes(60, 45, 2), votes(60 + pause_s, 0, seen_through)};
+    return presenceOf(history, visibilityOf(history), {})->seen_through_s;
+  };
+  constexpr double kMinute_s = 60;
+  EXPECT_FALSE(endAfter(kMinute_s, 20)) << "40 % of its places";
+  EXPECT_EQ(endAfter(kPauseOfVisits_s, 20), 60 + kPauseOfVisits_s);
+  EXPECT_EQ(endAfter(kMinute_s, 40), 120) << "a car that drove off";
+  const std::vector<ScanVotes> twice{votes(0, 50, 0), votes(60, 0, 20), votes(90'000, 0, 20)};
+  EXPECT_EQ(presenceOf(twice, visibilityOf(twice), {})->seen_through_s, 90'000) << "the other visit shows it";
+}
+
+TEST(Presence, OfAHedgeThatIsSeenAlongHasNoEnd) {
+  std::vector<ScanVotes> hedge{votes(1, 120, 5), votes(2, 120, 5),  votes(3, 115, 9), votes(4, 110, 10),
+                               votes(5, 49, 95), votes(6, 43, 99), votes(7, 34, 108)};
+  for (const double time_s : {8., 90'000.}) {
+    hedge.push_back(votes(time_s, 30, 111));
+    const Visibility thing = visibilityOf(hedge);
+    EXPECT_LT(logOddsOfPresence(std::span(hedge).last(1), thing.share_of_hits, {}), -6);
+    EXPECT_FALSE(presenceOf(hedge, thing, {})->seen_through_s);
+    hedge.pop_back();
+  }
+}
+
+TEST(Presence, IsMirroredWhenTimeRunsBackwards) {
+  std::mt19937 random(12);
+  std::size_t left = 0, came = 0;
+  for (int round = 0; round < 300; ++round) {
+    std::vector<ScanVotes> history;
+    double time_s = 0;
+    for (std::size_t i = 2 + random() % 7; i > 0; --i) {
+      time_s += random() % 3 == 0 ? 4000 : 60;
+      history.push_back(votes(time_s, random() % 2 == 0 ? 5 + random() % 30 : 0, 1 + random() % 30));
+    }
+    std::vector<ScanVotes> mirrored(history.rbegin(), history.rend());
+    for (ScanVotes& vote : mirrored) vote.time_s = -vote.time_s;
+    const auto there = presenceOf(history, visibilityOf(history), {}),
+               back = presenceOf(mirrored, visibilityOf(mirrored), {});
+    ASSERT_EQ(there.has_value(), back.has_value());
+    if (!there) continue;
+    const auto negative = [](const std::optional<double>& at) { return at ? std::optional(-*at) : std::nullopt; };
+    EXPECT_EQ(there->first_seen_s, -back->last_seen_s);
+    EXPECT_EQ(there->last_seen_s, -back->first_seen_s);
+    EXPECT_EQ(there->seen_through_s, negative(back->seen_empty_s));
+    EXPECT_EQ(there->seen_empty_s, negative(back->seen_through_s));
+    left += there->seen_through_s ? 1 : 0, came += there->seen_empty_s ? 1 : 0;
+  }
+  EXPECT_GT(left, 20U);
+  EXPECT_GT(came, 20U);
 }
 
 TEST(Presence, NothingLeavesWithinOneVisit) {

@@ -17,7 +17,7 @@ namespace {
 using MaybePresence = std::optional<perception::Presence>;
 
 /// The version of the computation of presence from rays. A new number invalidates every stored presence.
-constexpr std::uint32_t kVersion = 7;
+constexpr std::uint32_t kVersion = 8;
 
 /// A row of the stored table.
 struct Row {

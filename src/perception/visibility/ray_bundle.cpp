@@ -44,7 +44,7 @@ RaysNear RayBundle::raysNear(const Eigen::Vector3d& place_map, const RayParams& 
 bool RayBundle::passesWithin(const Place& place, const RayParams& params) const {
   const Eigen::Vector3d at = place.at - origin_;
   if (!isWithinReach(at, params)) return false;
-  const Silhouette thing(place, origin_);
+  const Silhouette thing(place, origin_, params.elevation_error_rad);
   bool is_met = false;
   index_.forEachNear(at, params.near_m, [&](const Eigen::Vector3d& end, double range_m, double along_m) {
     is_met = is_met || (range_m >= along_m + params.behind_m && thing.isMetBy(end));

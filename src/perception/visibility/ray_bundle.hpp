@@ -23,6 +23,9 @@ struct RayParams {
   int min_rays = 3;
   /// Where rays return from something, so many or more do near a place. Then a place where none returns is empty.
   double min_missing = 4;
+  /// Of rays, with the width of their beams (2 to 3 mrad): far from the sensor they graze the ground, and so small an
+  /// error takes them over a low thing.
+  double elevation_error_rad = 0.003;
 };
 
 /// Rays near a place that were not stopped before it.

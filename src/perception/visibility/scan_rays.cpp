@@ -165,7 +165,7 @@ bool ScanRays::isMissed(const Place& place, const RayParams& params) const {
   for (const RayBundle& bundle : bundles_) {
     const double around = bundle.returnsMissing(place.at, params);
     if (around == 0) continue;
-    const double share = std::min(Silhouette(place, bundle.origin()).halfWidth_m() / params.near_m, 1.0);
+    const double share = std::min(Silhouette(place, bundle.origin(), 0).halfWidth_m() / params.near_m, 1.0);
     missing += around * share * share;
   }
   return missing >= params.min_missing;

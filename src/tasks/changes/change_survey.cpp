@@ -21,7 +21,9 @@ namespace cluxel::tasks {
 
 namespace {
 
-constexpr perception::RayParams kCluxelRays;
+/// Errors of elevation matter less than for objects: connected cluxels must agree, and one in four that a ray would
+/// have hit is enough. With such errors 5 of 127 events were missed on seeds 41 to 44 instead of 1.
+constexpr perception::RayParams kCluxelRays{.elevation_error_rad = 0};
 
 struct TimedScan {
   const mapping::Cloud& cloud;
