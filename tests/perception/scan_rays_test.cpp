@@ -11,22 +11,10 @@
 #include <numbers>
 #include <random>
 
+#include "perception/rays_of_scan.hpp"
+
 namespace cluxel::perception {
 namespace {
-
-struct Ray {
-  Eigen::Vector3d start, end;  ///< [m, map]
-};
-
-scan::Scan scanOf(const std::vector<Ray>& rays) {
-  scan::Scan scan;
-  for (const Ray& ray : rays) {
-    const Eigen::Vector3f end = ray.end.cast<float>();
-    scan.points.x.push_back(end.x()), scan.points.y.push_back(end.y()), scan.points.z.push_back(end.z());
-    scan.points.origin.push_back(ray.start.cast<float>());
-  }
-  return scan;
-}
 
 /// Rays that start at one place; `ends` are relative to it.
 ScanRays raysFrom(const Eigen::Vector3d& origin, const std::vector<Eigen::Vector3f>& ends) {
@@ -235,11 +223,11 @@ TEST(ScanRays, OfALaserThatMovesTellTheSameInAnyOrder) {
     const Eigen::Vector3d start(0.2 * (i % 12), 0, 0);  // two lasers or more take turns
     rays.push_back({start, start + (2 + 8 * unit(random)) * randomDirection(random)});
   }
-  const ScanRays taking_turns(scanOf(rays));
+  const ScanRays taking_turns(scanOfRays(rays));
   std::vector<Ray> in_turn = rays;
   std::stable_sort(in_turn.begin(), in_turn.end(),
                    [](const Ray& a, const Ray& b) { return a.start.x() > b.start.x(); });
-  const ScanRays one_after_the_other(scanOf(in_turn));
+  const ScanRays one_after_the_other(scanOfRays(in_turn));
   ASSERT_EQ(taking_turns.bundles().size(), 12U);
   std::array<int, 4> seen{};
   for (int i = 0; i < 2'000; ++i) {
@@ -269,11 +257,11 @@ TEST(ScanRays, OfALaserThatMovesInShortStepsStartAtTheSamePlacesInAnyOrder) {
     const Eigen::Vector3d start(0.009 * (i / 100), 0, 0);
     rays.push_back({start, start + (2 + 0.001 * i) * randomDirection(random)});
   }
-  const ScanRays forwards(scanOf(rays));
+  const ScanRays forwards(scanOfRays(rays));
   ASSERT_EQ(forwards.bundles().size(), 7U);
   for (int round = 0; round < 3; ++round) {
     std::shuffle(rays.begin(), rays.end(), random);
-    const ScanRays shuffled(scanOf(rays));
+    const ScanRays shuffled(scanOfRays(rays));
     ASSERT_EQ(shuffled.bundles().size(), forwards.bundles().size());
     for (std::size_t i = 0; i < shuffled.bundles().size(); ++i) {
       ASSERT_EQ(shuffled.bundles()[i].origin(), forwards.bundles()[i].origin());
@@ -289,9 +277,9 @@ TEST(ScanRays, OfALaserThatMovesInShortStepsStartAtTheSamePlacesInAnyOrder) {
 TEST(ScanRays, OfOneScanTellTogetherWhereverTheyStart) {
   std::vector<Ray> rays;
   for (int i = 0; i < 3; ++i) rays.push_back({{0.2 * i, 0, 0}, {10, 0, 0}});
-  EXPECT_EQ(ScanRays(scanOf(rays)).verdictAt({5, 0, 0}, {}).verdict, RayVerdict::SeenThrough);
+  EXPECT_EQ(ScanRays(scanOfRays(rays)).verdictAt({5, 0, 0}, {}).verdict, RayVerdict::SeenThrough);
   rays.pop_back();
-  EXPECT_EQ(ScanRays(scanOf(rays)).verdictAt({5, 0, 0}, {}).verdict, RayVerdict::FewPassed);
+  EXPECT_EQ(ScanRays(scanOfRays(rays)).verdictAt({5, 0, 0}, {}).verdict, RayVerdict::FewPassed);
 }
 
 /// Rays from the origin to a plane x = 5 m with bars 4 cm wide every 16 cm, and to a wall at x = 9 m where there is

@@ -278,7 +278,9 @@ TaskAnswer registerAnswer(const mapping::MapReader& map, const InventoryParams& 
                      {"heightDifference", "m", "the map's height less the register's"}},
                     {}};
   std::map<std::string, std::size_t> counts;
-  for (const RegisterRow& row : compareWith(entries, items, observedPlaces(map, entries, comparison), comparison)) {
+  std::vector<RegisterRow> rows = compareWith(entries, items, comparison);
+  tellMissing(map, entries, items, comparison, rows);
+  for (const RegisterRow& row : rows) {
     const RegisterEntry* entry = row.entry ? &entries[*row.entry] : nullptr;
     const InventoryItem* item = row.item ? &items[*row.item].thing : nullptr;
     const Eigen::Vector2d at = entry != nullptr ? entry->at : item->at;

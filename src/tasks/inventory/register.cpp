@@ -3,10 +3,13 @@
 #include "tasks/inventory/register.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <map>
+#include <string>
 #include <tuple>
 
-#include "tasks/gone_things.hpp"
-#include "tasks/search/search_field.hpp"
+#include "base/quantile.hpp"
+#include "tasks/inventory/observed_places.hpp"
 
 namespace cluxel::tasks {
 
@@ -25,7 +28,7 @@ const char* nameOf(RegisterStatus status) {
 }
 
 std::vector<RegisterRow> compareWith(const std::vector<RegisterEntry>& entries, const std::vector<RegisterItem>& items,
-                                     const std::vector<bool>& is_observed, const RegisterParams& params) {
+                                     const RegisterParams& params) {
   std::vector<std::tuple<bool, double, std::size_t, std::size_t>> pairs;  // first: the thing is of a subclass
   for (std::size_t e = 0; e < entries.size(); ++e)
     for (std::size_t i = 0; i < items.size(); ++i) {
@@ -43,28 +46,43 @@ std::vector<RegisterRow> compareWith(const std::vector<RegisterEntry>& entries, 
     rows[e] = {RegisterStatus::Matched, e, i, distance};
   }
   for (std::size_t e = 0; e < entries.size(); ++e)
-    if (!has_item[e])
-      rows[e] = {is_observed[e] ? RegisterStatus::MissingInMap : RegisterStatus::NotObserved, e, std::nullopt,
-                 kNotMeasured};
+    if (!has_item[e]) rows[e] = {RegisterStatus::NotObserved, e, std::nullopt, kNotMeasured};
   for (std::size_t i = 0; i < items.size(); ++i)
     if (!is_taken[i] && items[i].is_listed)
       rows.push_back({RegisterStatus::NotInRegister, std::nullopt, i, kNotMeasured});
   return rows;
 }
 
-std::vector<bool> observedPlaces(const mapping::MapReader& map, const std::vector<RegisterEntry>& entries,
-                                 const RegisterParams& params) {
-  const TerrainGrid terrain = terrainOf(map);
-  SearchParams sight;
-  sight.view_m = params.view_m;
-  sight.fade = 1;
-  const std::vector<float> known = knownShare(map, terrain, sightOf(map, terrain, goneAmong(map), sight.eye_m), sight);
-  std::vector<bool> is_observed;
+std::vector<double> heightsOf(const std::vector<RegisterEntry>& entries, const std::vector<RegisterItem>& items) {
+  constexpr double kLeast_m = 1;  // nearly all that towns list is higher, and few things hide more
+  std::map<std::string, double> of_class;
+  std::vector<double> heights;
   for (const RegisterEntry& entry : entries) {
-    const auto cell = terrain.frame.cellAt(entry.at);
-    is_observed.push_back(cell && known[*cell] > 0);
+    const auto [known, is_new] = of_class.try_emplace(entry.class_iri, kLeast_m);
+    std::vector<double> measured;
+    for (std::size_t i = 0; is_new && i < items.size(); ++i)
+      if (items[i].classes.contains(entry.class_iri) && std::isfinite(items[i].thing.height_m))
+        measured.push_back(items[i].thing.height_m);
+    std::sort(measured.begin(), measured.end());
+    if (!measured.empty()) known->second = quantileOf(measured, 0.5);
+    heights.push_back(entry.height_m.value_or(known->second));
   }
-  return is_observed;
+  return heights;
+}
+
+void tellMissing(const mapping::MapReader& map, const std::vector<RegisterEntry>& entries,
+                 const std::vector<RegisterItem>& items, const RegisterParams& params, std::vector<RegisterRow>& rows) {
+  const std::vector<double> heights = heightsOf(entries, items);
+  std::vector<RegisterRow*> asked;
+  std::vector<AskedPlace> places;
+  for (RegisterRow& row : rows) {
+    if (row.status != RegisterStatus::NotObserved) continue;
+    asked.push_back(&row);
+    places.push_back({entries[*row.entry].at, heights[*row.entry]});
+  }
+  const std::vector<bool> is_observed = observedPlaces(map, places, params.view_m);
+  for (std::size_t i = 0; i < asked.size(); ++i)
+    if (is_observed[i]) asked[i]->status = RegisterStatus::MissingInMap;
 }
 
 }  // namespace cluxel::tasks

@@ -36,14 +36,14 @@ std::vector<Street> readStreets(const std::filesystem::path& file, const mapping
 enum class RegisterStatus : std::uint8_t {
   Matched,
   MissingInMap,   ///< its place was observed, and the map holds nothing of the class there
-  NotObserved,    ///< no scan saw its place from near enough
+  NotObserved,    ///< no scan looked at its place from near enough
   NotInRegister,  ///< the map holds it and it is listed, the register does not hold it
 };
 const char* nameOf(RegisterStatus status);
 
 struct RegisterParams {
   double within_m = 3;  ///< a pair is at most so far apart
-  double view_m = 25;   ///< a place is observed when a scan sees it from within this distance
+  double view_m = 25;   ///< a place is observed when a scan looks at it from within this distance
 };
 
 struct RegisterRow {
@@ -69,11 +69,15 @@ RegisterItems registerItems(const mapping::MapReader& map, const InventoryParams
                             const std::vector<RegisterEntry>& entries);
 
 /// Pairs of an entry and a thing of its class or of a subclass, each once: those of the very class first, then nearest
-/// first. Then what is left of the entries and of the listed things. In the order of the entries, then of the items.
-/// `is_observed`: per entry.
+/// first. Then what is left of the entries, as not observed, and of the listed things. In the order of the entries,
+/// then of the items.
 std::vector<RegisterRow> compareWith(const std::vector<RegisterEntry>& entries, const std::vector<RegisterItem>& items,
-                                     const std::vector<bool>& is_observed, const RegisterParams& params);
-std::vector<bool> observedPlaces(const mapping::MapReader& map, const std::vector<RegisterEntry>& entries,
-                                 const RegisterParams& params);
+                                     const RegisterParams& params);
+/// How high the thing of an entry is: as the entry says, else as the map's things of its class in the median, else the
+/// least that is likely [m]. By entry.
+std::vector<double> heightsOf(const std::vector<RegisterEntry>& entries, const std::vector<RegisterItem>& items);
+/// Tells which of the rows that are not observed are missing in the map. Memory and cost as for observedPlaces().
+void tellMissing(const mapping::MapReader& map, const std::vector<RegisterEntry>& entries,
+                 const std::vector<RegisterItem>& items, const RegisterParams& params, std::vector<RegisterRow>& rows);
 
 }  // namespace cluxel::tasks
