@@ -3,9 +3,7 @@
 #include "tasks/query_source.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <optional>
 #include <set>
 #include <sstream>
@@ -13,6 +11,7 @@
 
 #include "base/file_bytes.hpp"
 #include "base/nearest_name.hpp"
+#include "base/text/short_number.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/build/work_file.hpp"
 #include "rdf/io/rdf_io.hpp"
@@ -126,17 +125,11 @@ bool isNumber(const std::string& text) {
   return finiteNumber(text).has_value();
 }
 
-std::string shownNumber(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%g", value);
-  return text.data();
-}
-
 /// " from 0 to 1"; empty for an open range.
 std::string rangeText(const QueryParameter& parameter) {
   std::string text;
-  if (std::isfinite(parameter.min)) text += " from " + shownNumber(parameter.min);
-  if (std::isfinite(parameter.max)) text += " to " + shownNumber(parameter.max);
+  if (std::isfinite(parameter.min)) text += " from " + shortNumber(parameter.min);
+  if (std::isfinite(parameter.max)) text += " to " + shortNumber(parameter.max);
   return text;
 }
 

@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "base/parallel.hpp"
+#include "base/text/short_number.hpp"
 #include "base/utc_time.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/clouds/packed_points.hpp"
@@ -160,7 +161,7 @@ scan::Scan scanOf(const Cloud& cloud, scan::ScanPoints points) {
 void requireTime(const scan::Scan& scan) {
   if (scan.time_s && !hasCalendarYear(*scan.time_s))
     throw InputError({.file = scan.source},
-                     "its time of " + std::to_string(*scan.time_s) + " s lies outside the years 1 to 9999",
+                     "its time of " + shortNumber(*scan.time_s) + " s lies outside the years 1 to 9999",
                      "times are seconds since 1970-01-01 UTC: is it in milliseconds or nanoseconds?");
 }
 

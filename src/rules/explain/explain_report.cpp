@@ -2,10 +2,10 @@
 // Explanations as text and JSON.
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "base/text/short_number.hpp"
 #include "rdf/map_iris.hpp"
 #include "rules/explain/explain.hpp"
 #include "rules/explain/path_tree.hpp"
@@ -17,12 +17,7 @@ namespace {
 
 /// Rounded to 0.001 without trailing zeros: scanners do not resolve less than a millimetre.
 std::string number(double value) {
-  std::array<char, 64> buffer{};
-  std::snprintf(buffer.data(), buffer.size(), "%.3f", value);
-  std::string text = buffer.data();
-  text.erase(text.find_last_not_of('0') + 1);
-  if (text.back() == '.') text.pop_back();
-  return text == "-0" ? "0" : text;
+  return shortNumber(value, 3);
 }
 
 double shown(const DecisionStep& step, double value) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/ascii.hpp"
+#include "base/text/short_number.hpp"
 #include "rdf/iri.hpp"
 
 namespace cluxel::rules {
@@ -21,14 +22,6 @@ std::string describeTarget(const Target& target) {
   if (target.kind == Target::Kind::Name) return target.name;
   if (target.kind == Target::Kind::Labels) return withArticle(labelList(target.labels));
   return withArticle(rdf::localName(target.object_class));
-}
-
-/// "2.5" for 2.500000.
-std::string shortNumber(double value) {
-  std::string text = std::to_string(value);
-  text.erase(text.find_last_not_of('0') + 1);
-  if (text.back() == '.') text.pop_back();
-  return text;
 }
 
 /// "height of pole", "height of pole from 0 m to 1.2 m".

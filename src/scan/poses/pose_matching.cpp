@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/file_bytes.hpp"
+#include "base/text/short_number.hpp"
 #include "cluxel/error.hpp"
 #include "scan/scan_layouts.hpp"
 
@@ -31,7 +32,7 @@ void assignByTime(const std::vector<LayoutScan*>& scans, const PoseList& list, c
     const double off_s = std::abs(list.time_s[i] - *scan->file.time_s);
     if (off_s > kTimeTolerance_s)
       throw InputError({.file = poses_file},
-                       "has no pose for " + scan->file.path.string() + ": the nearest is " + std::to_string(off_s) +
+                       "has no pose for " + scan->file.path.string() + ": the nearest is " + shortNumber(off_s) +
                            " s away from its time",
                        "a pose within 0.01 s of every scan is needed");
     setPose(*scan, list.poses[i]);

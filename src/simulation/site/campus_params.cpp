@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "base/text/short_number.hpp"
 #include "cluxel/error.hpp"
 #include "simulation/site/site_plan.hpp"
 
@@ -36,13 +37,6 @@ const std::array<CampusParamInfo, 13>& campusParamInfos() {
 }
 
 namespace {
-
-std::string shortNumber(double value) {
-  std::string text = std::to_string(value);
-  text.erase(text.find_last_not_of('0') + 1);
-  if (text.ends_with('.')) text.pop_back();
-  return text;
-}
 
 void checkRange(const CampusParams& params, const CampusParamInfo& info) {
   const double value = params.*info.field;

@@ -3,12 +3,11 @@
 #include "tasks/ask/task_table.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "base/nearest_name.hpp"
+#include "base/text/short_number.hpp"
 #include "cluxel/error.hpp"
 #include "tasks/finite_number.hpp"
 
@@ -18,12 +17,6 @@ namespace {
 
 [[noreturn]] void refuseValue(const std::string& name, const std::string& why) {
   throw Error(ErrorKind::InvalidArgument, "parameter " + name + ": " + why);
-}
-
-std::string shortNumber(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%g", value);
-  return text.data();
 }
 
 void checkNumber(const TaskParameter& parameter, const std::string& text) {

@@ -7,6 +7,7 @@
 #include <limits>
 #include <map>
 
+#include "base/text/short_number.hpp"
 #include "cluxel/error.hpp"
 #include "tasks/ways/way_search.hpp"
 
@@ -17,11 +18,7 @@ namespace {
 constexpr double kSnap_m = 2.0;
 
 std::string written(const Eigen::Vector2d& p_map) {
-  const auto tenth = [](double value) {
-    std::string text = std::to_string(std::round(value * 10) / 10);
-    return text.substr(0, text.find('.') + 2);
-  };
-  return "(" + tenth(p_map.x()) + ", " + tenth(p_map.y()) + ")";
+  return "(" + shortNumber(p_map.x(), 1) + ", " + shortNumber(p_map.y(), 1) + ")";
 }
 
 Route routeOf(const PassableGrid& grid, std::vector<std::uint32_t> cells) {

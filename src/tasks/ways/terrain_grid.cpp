@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/text/short_number.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/regions/tile_objects.hpp"
 #include "mapping/stored_grid.hpp"
@@ -32,7 +33,7 @@ constexpr std::uint64_t kMaxCells = 200'000'000;
 GridFrame boundedFrame(const GridFrame& frame, double columns, double rows) {
   if (!(columns * rows <= static_cast<double>(kMaxCells)))
     throw Error(ErrorKind::BudgetExceeded, "the extent is too large for a grid of cells of " +
-                                               std::to_string(frame.cell_m) + " m; choose larger cells");
+                                               shortNumber(frame.cell_m) + " m; choose larger cells");
   GridFrame bounded = frame;
   bounded.columns = static_cast<int>(columns);
   bounded.rows = static_cast<int>(rows);
