@@ -3,7 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
+#include <utility>
 
+#include "cluxel/error.hpp"
 #include "rdf/map_iris.hpp"
 #include "tasks/campus_map_fixture.hpp"
 #include "tasks/ways/way_report.hpp"
@@ -68,6 +71,18 @@ TEST(WaysOfACampus, AMobilityIsWrittenAsAClassIs) {
   EXPECT_NE(movable, without("Static"));
   for (const char* name : {"movable", "MOVABLE", "clx:Movable", "https://w3id.org/cluxel/ontology#Movable"})
     EXPECT_EQ(without(name), movable) << name;
+}
+
+TEST(WaysOfACampus, PlacesOutsideOfTheMapAreNamedShortly) {
+  const PassableGrid grid = passableIn(CampusMap::shared().map(), {});
+  for (const auto& [place, text] :
+       {std::pair(Eigen::Vector2d(1e300, 0), "(1e300, 0)"), {Eigen::Vector2d(-2500.25, 5000), "(-2500.2, 5000)"}})
+    try {
+      openCellNear(grid, place);
+      FAIL() << text;
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find(text), std::string::npos) << error.what();
+    }
 }
 
 TEST(WaysOfACampus, RoutesStayOnOpenCellsAndAreReported) {
