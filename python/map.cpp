@@ -216,11 +216,10 @@ void bindMaps(py::module_& module) {
            "Runs a SPARQL 1.1 Update on the operator's statements and infers what follows, all of it or nothing.\n"
            "Gives UpdateCounts. LOAD is refused. deadline_s, max_memory_bytes and source_name are as for query().")
       .def("objects", &objectsOf, py::arg("class_name") = py::none(), Release(),
-           "The objects that the rules found, sorted by IRI: all, or those of a class and its subclasses, named "
-           "'Tree',\n"
-           "'clx:Tree' or by IRI. Raises NotFoundError when the ontology has no such class, InvalidArgumentError for "
-           "one\n"
-           "whose things are no objects, such as ways and parts.")
+           "The objects that the rules found, sorted by IRI: all, or those of a class, named 'Tree', 'clx:Tree' or by "
+           "IRI,\n"
+           "as a query for '?object a clx:Tree' finds them. Raises NotFoundError when the ontology has no such class,\n"
+           "InvalidArgumentError for one whose things are no objects, such as ways and parts.")
       .def("clouds", &Map::clouds, Release(), "The scans, sorted by id: list of Cloud.")
       .def(
           "points",

@@ -164,9 +164,10 @@ class CLUXEL_API Map {
   /// tiles around it. Reads the whole map only when these tiles do not reproduce the stored decision.
   Explanation explain(const std::string& name) const;
 
-  /// All objects that the rules found, sorted by IRI. What SPARQL rules derive is answered by query() only.
+  /// All objects that the rules found, sorted by IRI. Things that SPARQL rules make are answered by query() only.
   std::vector<Object> objects() const;
-  /// Those of a class or its subclasses, named "Tree", "clx:Tree" or by IRI. Numbers are those of objects(). NotFound
+  /// Those of a class, named "Tree", "clx:Tree" or by IRI, as the query `?object a clx:Tree` finds them: also those
+  /// that a SPARQL rule says are of it, though Object::class_iri is another. Numbers are those of objects(). NotFound
   /// when the ontology has no such class; InvalidArgument for a class whose things are no objects, such as ways.
   std::vector<Object> objects(std::string_view class_name) const;
 

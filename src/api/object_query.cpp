@@ -2,13 +2,16 @@
 // Two queries to the observed graph: objects, and their parts.
 #include "api/object_query.hpp"
 
+#include <algorithm>
 #include <map>
 
 #include "api/answer_data.hpp"
 #include "rdf/iri.hpp"
+#include "rdf/map_iris.hpp"
 #include "rdf/vocabulary.hpp"
 #include "sparql/query_engine.hpp"
 #include "tasks/named_class.hpp"
+#include "tasks/objects_of_class.hpp"
 
 namespace cluxel {
 
@@ -102,10 +105,23 @@ std::vector<Object> objectsOf(const rdf::QuadReader& reader, std::string_view cl
                               const std::function<tasks::Namespaces()>& namespaces) {
   const rdf::OntologyView ontology = ontologyViewOf(reader);
   const std::string class_iri = tasks::classNamed(ontology, std::string(class_name), namespaces);
-  std::vector<Object> objects = objectsOf(reader, ontology);
-  std::erase_if(objects, [&](const Object& object) { return !ontology.isA(object.class_iri, class_iri); });
+  const std::vector<Object> all = objectsOf(reader, ontology);
+  std::vector<Object> objects;
+  for (const Object* object : objectsOfClass(all, reader, class_iri)) objects.push_back(*object);
   if (objects.empty()) tasks::requireClassOfObjects(ontology, class_iri);
   return objects;
+}
+
+std::vector<const Object*> objectsOfClass(const std::vector<Object>& objects, const rdf::QuadReader& reader,
+                                          const std::string& class_iri) {
+  std::vector<const Object*> found;
+  for (const ContentHash& id : tasks::objectsOfClass(reader, class_iri)) {
+    const std::string iri = rdf::iriOfObject(id);
+    const auto place = std::lower_bound(objects.begin(), objects.end(), iri,
+                                        [](const Object& object, const auto& name) { return object.iri < name; });
+    if (place != objects.end() && place->iri == iri) found.push_back(&*place);
+  }
+  return found;
 }
 
 }  // namespace cluxel

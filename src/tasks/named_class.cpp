@@ -16,6 +16,7 @@
 #include "rdf/ontology/class_names.hpp"
 #include "rdf/vocabulary.hpp"
 #include "rules/language/rule_set.hpp"
+#include "tasks/objects_of_class.hpp"
 
 namespace cluxel::tasks {
 
@@ -158,10 +159,7 @@ void requireClassOfObjects(const rdf::OntologyView& ontology, const std::string&
 
 void requireClassOfObjects(const mapping::MapReader& map, const rdf::OntologyView& ontology,
                            const std::string& class_iri) {
-  const std::vector<std::string>& classes = map.objectClasses();
-  if (std::none_of(classes.begin(), classes.end(),
-                   [&](const std::string& of_object) { return ontology.isA(of_object, class_iri); }))
-    requireClassOfObjects(ontology, class_iri);
+  if (objectsOfClass(map, class_iri).empty()) requireClassOfObjects(ontology, class_iri);
 }
 
 Namespaces namespacesOf(const mapping::MapInputs& inputs) {

@@ -186,8 +186,7 @@ TEST(WaysOfACampus, ASearchListsWhatIsKnownAndWhereToLook) {
 TEST(SearchField, FindsAWayWhereverItRuns) {
   const MapReader& map = CampusMap::shared().map();
   const TerrainGrid terrain = terrainOf(map);
-  const rdf::OntologyView ontology = rdf::ontologyViewOf(ontologySources(map.inputs().ontology));
-  const auto marked = cellsWith(map, terrain, ontology, rdf::vocabulary::clx("Way"), goneAmong(map));
+  const auto marked = cellsWith(map, terrain, rdf::vocabulary::clx("Way"), goneAmong(map));
   const WayGraph ways = map.ways();
   ASSERT_FALSE(ways.ways.empty());
   std::size_t on_line = 0;
@@ -222,8 +221,7 @@ TEST(SearchField, FindsALineThatRunsFarBeyondTheMap) {
             {}, silence());
   const MapReader map(file);
   const TerrainGrid terrain = terrainOf(map);
-  const rdf::OntologyView ontology = rdf::ontologyViewOf(ontologySources(map.inputs().ontology));
-  const auto marked = cellsWith(map, terrain, ontology, "http://e.x/Far", goneAmong(map));
+  const auto marked = cellsWith(map, terrain, "http://e.x/Far", goneAmong(map));
   const auto row = static_cast<int>((1.1 - terrain.frame.min_y) / terrain.frame.cell_m);
   for (std::uint32_t cell = 0; cell < terrain.frame.size(); ++cell)
     ASSERT_EQ(marked[cell] == 1, terrain.frame.rowOf(cell) == row) << "cell " << cell;

@@ -96,8 +96,10 @@ std::vector<const Object*> selected(const mapping::MapReader& map, const ObjectT
   const auto namespaces = [&] { return tasks::namespacesOf(map.inputs()); };
   const std::string class_iri = class_name ? tasks::classNamed(table.ontology, *class_name, namespaces) : "";
   std::vector<const Object*> objects;
-  for (const Object& object : table.objects)
-    if (!class_name || table.ontology.isA(object.class_iri, class_iri)) objects.push_back(&object);
+  if (class_name)
+    objects = objectsOfClass(table.objects, map.quads(), class_iri);
+  else
+    for (const Object& object : table.objects) objects.push_back(&object);
   if (class_name && objects.empty()) tasks::requireClassOfObjects(table.ontology, class_iri);
   std::erase_if(objects, [&](const Object* object) { return !box.meets(*object); });
   return objects;

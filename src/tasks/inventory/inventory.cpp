@@ -18,6 +18,7 @@
 #include "sparql/query_engine.hpp"
 #include "tasks/gone_things.hpp"
 #include "tasks/named_class.hpp"
+#include "tasks/objects_of_class.hpp"
 
 namespace cluxel::tasks {
 
@@ -195,16 +196,53 @@ std::vector<InventoryItem> sidewalksOf(const mapping::MapReader& map) {
   return found;
 }
 
-InventoryItem measuredItem(const mapping::MapReader& map, const mapping::WholeObject& whole) {
+InventoryItem measuredItem(const mapping::MapReader& map, const mapping::WholeObject& whole,
+                           const std::string& class_iri) {
   const auto& [number, object, cluxels] = whole;
   InventoryItem item;
-  item.kind = map.classNames().nameOf(object.class_iri);
-  item.class_iri = object.class_iri;
+  item.kind = map.classNames().nameOf(class_iri);
+  item.class_iri = class_iri;
   item.object = rdf::iriOfObject(object.id);
   item.height_m = mapping::geometryOf(cluxels, mapping::cluxelsOf(object)).top_m;
   item.at = mapping::geometryOf(cluxels, partCluxels(object, rdf::vocabulary::clx("TreeTrunk"))).centroid.head<2>();
   if (item.kind == "Tree") item.crown_m = crownDiameter(object, cluxels);
   return item;
+}
+
+/// What to list, by its numbers in MapReader::objects(), each with the class that it is listed as: its own when that is
+/// one of the classes or below one, else the first of them that the map says it is of.
+std::map<std::uint32_t, std::string> listedObjects(const mapping::MapReader& map,
+                                                   const std::vector<std::string>& classes) {
+  const rdf::OntologyView ontology = ontologyViewOf(map.quads());
+  const std::vector<bool> is_gone = goneAmong(map);
+  std::map<std::uint32_t, std::string> listed;
+  for (const std::string& name : classes) {
+    const std::string class_iri = classNamed(map, ontology, name);
+    for (const std::uint32_t object : objectsOfClass(map, class_iri)) {
+      if (is_gone[object]) continue;
+      std::string& listed_as = listed[object];
+      const std::string& own = map.objectClasses()[object];
+      if (ontology.isA(own, class_iri))
+        listed_as = own;
+      else if (listed_as.empty())
+        listed_as = class_iri;
+    }
+  }
+  return listed;
+}
+
+/// The objects without their streets, by number. Memory and cost as for forEachWholeObject().
+std::vector<InventoryItem> measuredItems(const mapping::MapReader& map,
+                                         const std::map<std::uint32_t, std::string>& listed) {
+  std::vector<bool> is_wanted(map.objectIds().size(), false);
+  for (const auto& [number, class_iri] : listed) is_wanted[number] = true;
+  std::map<std::uint32_t, InventoryItem> by_number;
+  mapping::forEachWholeObject(map, is_wanted, [&](const mapping::WholeObject& whole) {
+    by_number.emplace(whole.number, measuredItem(map, whole, listed.at(whole.number)));
+  });
+  std::vector<InventoryItem> items;
+  for (auto& [number, item] : by_number) items.push_back(std::move(item));
+  return items;
 }
 
 }  // namespace
@@ -229,29 +267,9 @@ InventoryParams inventoryOfKinds(const mapping::MapReader& map, const std::vecto
   return params;
 }
 
-std::map<std::uint32_t, InventoryItem> measuredItems(const mapping::MapReader& map,
-                                                     const std::vector<bool>& is_wanted) {
-  std::map<std::uint32_t, InventoryItem> items;
-  mapping::forEachWholeObject(map, is_wanted, [&](const mapping::WholeObject& whole) {
-    items.emplace(whole.number, measuredItem(map, whole));
-  });
-  return items;
-}
-
 Inventory inventoryOf(const mapping::MapReader& map, const InventoryParams& params,
                       const std::vector<Street>& streets) {
-  const rdf::OntologyView ontology = ontologyViewOf(map.quads());
-  std::vector<std::string> wanted;
-  for (const std::string& name : params.classes) wanted.push_back(classNamed(map, ontology, name));
-  const std::vector<bool> is_gone = goneAmong(map);
-  const std::vector<std::string>& classes = map.objectClasses();
-  std::vector<bool> is_wanted;
-  for (std::size_t i = 0; i < is_gone.size(); ++i)
-    is_wanted.push_back(!is_gone[i] && std::any_of(wanted.begin(), wanted.end(), [&](const std::string& iri) {
-      return ontology.isA(classes[i], iri);
-    }));
-  std::vector<InventoryItem> items;
-  for (auto& [number, item] : measuredItems(map, is_wanted)) items.push_back(std::move(item));
+  std::vector<InventoryItem> items = measuredItems(map, listedObjects(map, params.classes));
   std::stable_sort(items.begin(), items.end(), [](const auto& a, const auto& b) { return a.kind < b.kind; });
   Inventory rows;
   if (params.with_rows) rows = parkingRows(map);

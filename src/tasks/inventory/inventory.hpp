@@ -5,7 +5,6 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <limits>
-#include <map>
 #include <string>
 #include <vector>
 
@@ -18,8 +17,9 @@ inline constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
 
 /// One entry. Sizes that do not apply to its kind are kNotMeasured.
 struct InventoryItem {
-  std::string kind;                              ///< local name of the class
-  std::string class_iri;                         ///< of the object, or clx:ParkingRow or clx:Sidewalk
+  std::string kind;  ///< local name of the class
+  /// Of the object, or clx:ParkingRow or clx:Sidewalk; the class that was asked for where the object is of it besides.
+  std::string class_iri;
   std::string object;                            ///< IRI of the object or way; empty for a row
   std::string street;                            ///< name of the nearest street; empty: none is known near it
   Eigen::Vector2d at = Eigen::Vector2d::Zero();  ///< [m, map]; of a tree its trunk
@@ -53,9 +53,6 @@ struct InventoryParams {
 /// requireClassOfObjects().
 InventoryParams inventoryOfKinds(const mapping::MapReader& map, const std::vector<std::string>& kinds);
 
-/// The objects that are marked, without their streets, by their numbers in MapReader::objects(). Memory and cost as for
-/// forEachWholeObject().
-std::map<std::uint32_t, InventoryItem> measuredItems(const mapping::MapReader& map, const std::vector<bool>& is_wanted);
 /// A parking row that lost vehicles is one as long as so many are left, whatever number the map's rule asks for: a rule
 /// does not tell that number.
 inline constexpr std::size_t kFewestInBrokenRow = 3;
@@ -65,8 +62,8 @@ struct Inventory {
   std::size_t rows_left_out = 0;  ///< parking rows that lost vehicles, and have fewer than kFewestInBrokenRow left
   double nearest_street_m = kNotMeasured;  ///< the smallest distance of an item from a street
 };
-/// Without objects that later scans show to be gone. Objects first, by class and IRI, then rows and sidewalks by place.
-/// Throws Error (NotFound) for an unknown class.
+/// The objects that objectsOfClass() tells, without those that later scans show to be gone. Objects first, by class and
+/// IRI, then rows and sidewalks by place. Throws Error (NotFound) for an unknown class.
 Inventory inventoryOf(const mapping::MapReader& map, const InventoryParams& params,
                       const std::vector<Street>& streets = {});
 

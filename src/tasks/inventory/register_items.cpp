@@ -26,10 +26,6 @@ class RegisterThings {
     if (is_new) items_.push_back({.thing = std::move(thing)});
     return items_[place->second];
   }
-  RegisterItem* find(const std::string& iri) {
-    const auto place = numbers_.find(keyOf(iri));
-    return place == numbers_.end() ? nullptr : &items_[place->second];
-  }
   std::vector<RegisterItem> take() { return std::move(items_); }
 
  private:
@@ -83,12 +79,9 @@ std::set<std::string> namesOfGone(const mapping::MapReader& map, const std::vect
 RegisterItems registerItems(const mapping::MapReader& map, const InventoryParams& params,
                             const std::vector<RegisterEntry>& entries) {
   const rdf::OntologyView ontology = ontologyViewOf(map.quads());
-  std::map<std::string, std::uint32_t> object_named;
-  const std::vector<bool> is_gone = goneAmong(map);
-  for (std::uint32_t i = 0; i < is_gone.size(); ++i) object_named[rdf::iriOfObject(map.objectIds()[i])] = i;
   std::set<std::string> classes;
   for (const RegisterEntry& entry : entries) classes.insert(entry.class_iri);
-  const std::set<std::string> gone = namesOfGone(map, is_gone);
+  const std::set<std::string> gone = namesOfGone(map, goneAmong(map));
   RegisterThings things;
   Inventory listed = inventoryOf(map, params);
   for (InventoryItem& item : listed.items) things.add(std::move(item)).is_listed = true;
@@ -100,21 +93,8 @@ RegisterItems registerItems(const mapping::MapReader& map, const InventoryParams
     Inventory meant = inventoryOf(map, of_class);
     for (InventoryItem& item : meant.items) things.add(std::move(item)).classes.insert(class_iri);
     rows_left_out = std::max(rows_left_out, meant.rows_left_out);  // those of one class are among those of another
-    std::vector<InventoryItem> typed = thingsTyped(map, class_iri);
-    std::vector<bool> is_new(is_gone.size(), false);
-    for (const InventoryItem& item : typed)
-      if (const auto object = object_named.find(item.object);
-          object != object_named.end() && !is_gone[object->second] && things.find(item.object) == nullptr)
-        is_new[object->second] = true;
-    std::map<std::uint32_t, InventoryItem> measured = measuredItems(map, is_new);
-    for (InventoryItem& item : typed) {
-      const auto object = object_named.find(item.object);
-      if (gone.contains(item.object)) continue;
-      RegisterItem* known = things.find(item.object);
-      if (known == nullptr)
-        known = &things.add(object == object_named.end() ? std::move(item) : std::move(measured.at(object->second)));
-      known->classes.insert(class_iri);
-    }
+    for (InventoryItem& item : thingsTyped(map, class_iri))
+      if (!gone.contains(item.object)) things.add(std::move(item)).classes.insert(class_iri);
   }
   return {things.take(), rows_left_out};
 }

@@ -17,6 +17,7 @@
 #include "tasks/finite_number.hpp"
 #include "tasks/gone_things.hpp"
 #include "tasks/named_class.hpp"
+#include "tasks/objects_of_class.hpp"
 #include "tasks/query_source.hpp"
 #include "tasks/search/search_tour.hpp"
 
@@ -24,14 +25,11 @@ namespace cluxel::tasks {
 
 namespace {
 
-std::vector<KnownObject> knownOf(const mapping::MapReader& map, const rdf::OntologyView& ontology,
-                                 const std::string& class_iri, const Eigen::Vector2d& from,
-                                 const std::vector<bool>& is_gone) {
+std::vector<KnownObject> knownOf(const mapping::MapReader& map, const std::string& class_iri,
+                                 const Eigen::Vector2d& from, const std::vector<bool>& is_gone) {
   std::vector<KnownObject> known;
-  const std::vector<std::string>& classes = map.objectClasses();
-  for (std::uint32_t i = 0; i < classes.size(); ++i)
-    if (!is_gone[i] && ontology.isA(classes[i], class_iri))
-      known.push_back({i, (placeNamed(map, map.objectIds()[i].hex()) - from).norm()});
+  for (const std::uint32_t i : objectsOfClass(map, class_iri))
+    if (!is_gone[i]) known.push_back({i, (placeNamed(map, map.objectIds()[i].hex()) - from).norm()});
   std::stable_sort(known.begin(), known.end(),
                    [](const auto& a, const auto& b) { return a.distance_m < b.distance_m; });
   return known;
@@ -143,9 +141,9 @@ SearchAnswer searchFor(const mapping::MapReader& map, const SearchRequest& reque
   const std::vector<bool> is_gone = request.ways.with_gone ? std::vector<bool>(map.objectIds().size()) : goneAmong(map);
   SearchAnswer answer;
   answer.frame = grid.frame;
-  answer.known = knownOf(map, ontology, class_iri, from, is_gone);
+  answer.known = knownOf(map, class_iri, from, is_gone);
   answer.places = usualPlacesOf(ontology, class_iri, request.places);
-  const std::vector<PlaceEvidence> places = evidenceOf(map, terrain, ontology, answer.places, is_left_out);
+  const std::vector<PlaceEvidence> places = evidenceOf(map, terrain, answer.places, is_left_out);
   for (const PlaceEvidence& place : places) answer.reasons.push_back(place.near_class);
   const SightGrid sight = sightOf(map, terrain, is_left_out, request.search.eye_m);
   const SearchField field = fieldOf(grid.frame, knownShare(map, terrain, sight, request.search), places);

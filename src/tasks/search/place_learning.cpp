@@ -12,6 +12,7 @@
 #include "mapping/facts/object_geometry.hpp"
 #include "rdf/vocabulary.hpp"
 #include "tasks/named_class.hpp"
+#include "tasks/objects_of_class.hpp"
 #include "tasks/search/search_field.hpp"
 #include "tasks/ways/class_cells.hpp"
 #include "tasks/ways/passable_grid.hpp"
@@ -22,16 +23,18 @@ namespace cluxel::tasks {
 namespace {
 
 struct PlacedObject {
+  std::uint32_t number = 0;  ///< in MapReader::objects()
   std::string class_iri;
   Eigen::Vector2d at;
 };
 
 std::vector<PlacedObject> placedObjects(const mapping::MapReader& map, const rdf::OntologyView& ontology) {
   std::vector<PlacedObject> placed;
-  for (const rules::SemanticObject& object : map.objects()) {
+  for (std::uint32_t i = 0; i < map.objects().size(); ++i) {
+    const rules::SemanticObject& object = map.objects()[i];
     if (ontology.isA(object.class_iri, rdf::vocabulary::clx("Surface"))) continue;
     const auto cluxels = mapping::cluxelsOf(object);
-    placed.push_back({object.class_iri, mapping::geometryOf(map.scene().cluxels, cluxels).centroid.head<2>()});
+    placed.push_back({i, object.class_iri, mapping::geometryOf(map.scene().cluxels, cluxels).centroid.head<2>()});
   }
   return placed;
 }
@@ -45,14 +48,21 @@ double toNextOfClass(const std::vector<PlacedObject>& objects, std::size_t self)
   return nearest;
 }
 
-/// From an object to the nearest other one of a class [m]; infinite where the object is of that class by its own kind.
-double distanceTo(const std::string& near_class, const std::vector<PlacedObject>& objects, std::size_t self,
-                  const TerrainGrid& terrain, const NearestMarked& nearest, const rdf::OntologyView& ontology) {
+/// The cells of a class, and which objects are of it.
+struct NearClass {
+  std::string iri;
+  std::vector<bool> is_of_class;
+  NearestMarked nearest;
+};
+
+/// From an object to the nearest other one of a class [m]; infinite where the object itself is of that class.
+double distanceTo(const NearClass& near, const std::vector<PlacedObject>& objects, std::size_t self,
+                  const TerrainGrid& terrain) {
   constexpr double infinite = std::numeric_limits<double>::infinity();
-  if (objects[self].class_iri == near_class) return toNextOfClass(objects, self);
+  if (objects[self].class_iri == near.iri) return toNextOfClass(objects, self);
   const auto cell = terrain.frame.cellAt(objects[self].at);
-  if (!cell || ontology.isA(objects[self].class_iri, near_class)) return infinite;
-  return static_cast<double>(nearest.distance[*cell]) * terrain.frame.cell_m;
+  if (!cell || near.is_of_class[objects[self].number]) return infinite;
+  return static_cast<double>(near.nearest.distance[*cell]) * terrain.frame.cell_m;
 }
 
 /// The share of the observed ground whose distance [cells] to what is marked is at most `within`.
@@ -94,13 +104,13 @@ void PlaceLearner::add(const mapping::MapReader& map) {
   for (const rdf::OntologyClass& known : ontology.classes)
     if (ontology.isA(known.iri, rdf::vocabulary::clx("Place"))) near_classes.insert(known.iri);
   for (const std::string& near_class : near_classes) {
-    const NearestMarked nearest =
-        nearestMarked(terrain.frame, cellsWith(map, terrain, ontology, near_class, none_left_out));
+    NearClass near{near_class, none_left_out,
+                   nearestMarked(terrain.frame, cellsWith(map, terrain, near_class, none_left_out))};
+    for (const std::uint32_t object : objectsOfClass(map, near_class)) near.is_of_class[object] = true;
     std::vector<double> distance_m;
-    for (std::size_t i = 0; i < objects.size(); ++i)
-      distance_m.push_back(distanceTo(near_class, objects, i, terrain, nearest, ontology));
+    for (std::size_t i = 0; i < objects.size(); ++i) distance_m.push_back(distanceTo(near, objects, i, terrain));
     for (const double within_m : params_.distances_m) {
-      const double share = groundShare(terrain, nearest, within_m / params_.cell_m);
+      const double share = groundShare(terrain, near.nearest, within_m / params_.cell_m);
       if (share == 0) continue;
       const Candidate candidate{near_class, within_m};
       ground_[candidate].sum += share;

@@ -25,12 +25,12 @@ std::vector<std::uint32_t> cellsOf(const GridFrame& frame, const PlaceEvidence& 
 }  // namespace
 
 std::vector<PlaceEvidence> evidenceOf(const mapping::MapReader& map, const TerrainGrid& terrain,
-                                      const rdf::OntologyView& ontology, const std::vector<rdf::UsualPlace>& places,
+                                      const std::vector<rdf::UsualPlace>& places,
                                       const std::vector<bool>& is_left_out) {
   std::vector<PlaceEvidence> evidence;
   for (const rdf::UsualPlace& place : places)
     evidence.push_back({mapping::localName(place.near_class), place.within_m, place.probability,
-                        cellsWith(map, terrain, ontology, place.near_class, is_left_out)});
+                        cellsWith(map, terrain, place.near_class, is_left_out)});
   return evidence;
 }
 

@@ -39,8 +39,7 @@ struct SearchField {
 
 /// The usual places as they are in the map.
 std::vector<PlaceEvidence> evidenceOf(const mapping::MapReader& map, const TerrainGrid& terrain,
-                                      const rdf::OntologyView& ontology, const std::vector<rdf::UsualPlace>& places,
-                                      const std::vector<bool>& is_left_out);
+                                      const std::vector<rdf::UsualPlace>& places, const std::vector<bool>& is_left_out);
 
 /// Per cell, the probability that the map knows an object of the class that is there: `detection` within view_m of a
 /// scan that sees the cell, from there falling to 0 at fade times view_m. Scans without a pose count where ground was

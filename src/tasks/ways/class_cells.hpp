@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "rdf/ontology/ontology.hpp"
 #include "tasks/ways/terrain_grid.hpp"
 
 namespace cluxel::tasks {
@@ -15,7 +14,6 @@ namespace cluxel::tasks {
 /// positions of things that SPARQL rules derive, and cells along the lines of ways. `is_left_out`: per object, true
 /// where it does not count.
 std::vector<std::uint8_t> cellsWith(const mapping::MapReader& map, const TerrainGrid& terrain,
-                                    const rdf::OntologyView& ontology, const std::string& class_iri,
-                                    const std::vector<bool>& is_left_out);
+                                    const std::string& class_iri, const std::vector<bool>& is_left_out);
 
 }  // namespace cluxel::tasks

@@ -12,6 +12,7 @@
 #include "tasks/finite_number.hpp"
 #include "tasks/gone_things.hpp"
 #include "tasks/named_class.hpp"
+#include "tasks/objects_of_class.hpp"
 #include "tasks/ways/class_cells.hpp"
 #include "tasks/ways/route.hpp"
 
@@ -26,13 +27,14 @@ class ObjectSelector {
 
   void mark(const std::string& name, std::vector<bool>& marked) const {
     const std::optional<rdf::Mobility> mobility = mobilityNamed(ontology_, name);
-    const std::string iri = mobility ? std::string() : classNamed(map_, ontology_, name);
+    if (!mobility) {
+      for (const std::uint32_t i : objectsOfClass(map_, classNamed(map_, ontology_, name))) marked[i] = true;
+      return;
+    }
     const std::vector<std::string>& classes = map_.objectClasses();
     for (std::size_t i = 0; i < classes.size(); ++i) {
-      const std::string& class_iri = classes[i];
-      const rdf::OntologyClass* known = ontology_.find(class_iri);
-      const bool is_meant = mobility ? known != nullptr && known->mobility == mobility : ontology_.isA(class_iri, iri);
-      if (is_meant) marked[i] = true;
+      const rdf::OntologyClass* known = ontology_.find(classes[i]);
+      if (known != nullptr && known->mobility == mobility) marked[i] = true;
     }
   }
 
@@ -49,7 +51,7 @@ class ObjectSelector {
     } else {
       const std::string iri = classNamed(map_, ontology_, name);
       const bool is_surface = ontology_.isA(iri, rdf::vocabulary::clx("Surface"));  // one walks on it
-      cells = is_surface ? terrain.seen : cellsWith(map_, terrain, ontology_, iri, is_left_out);
+      cells = is_surface ? terrain.seen : cellsWith(map_, terrain, iri, is_left_out);
     }
     if (std::find(cells.begin(), cells.end(), 1) == cells.end())
       throw Error(ErrorKind::NotFound, "the map holds nothing of " + name + " that a way could stay near");
