@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdlib>
 #include <memory>
+#include <optional>
 #include <random>
 #include <set>
 #include <string>
@@ -34,12 +35,21 @@ inline Term thing(const std::string& name, std::size_t number) {
 /// Facts about a few trees, vehicles, walls and ways, enough for every shipped rule to find something.
 class Universe {
  public:
-  Universe() {
+  /// `with_statements`: also what operators stated of trees and barriers.
+  explicit Universe(bool with_statements = false) {
     for (std::size_t i = 0; i < 9; ++i) addTree(i);
     for (std::size_t i = 0; i < 6; ++i) addVehicle(i);
     for (std::size_t i = 0; i < 3; ++i) addBarrier(i);
     for (std::size_t i = 0; i < 3; ++i) addBuilding(i);
     for (std::size_t i = 0; i < 6; ++i) addWay(i);
+    if (with_statements) addStatements();
+  }
+  /// The graph of a fact; absent: any graph of stated facts will do.
+  static std::optional<std::string_view> graphOf(const std::array<Term, 3>& fact) {
+    const std::string property = fact[1].text.substr(fact[1].text.find('#') + 1);
+    if (property == "statementKind" || property == "statedClass") return vocabulary::kGraphOperator;
+    if (property == "statementEffect" || property == "appliesTo") return vocabulary::kGraphObserved;
+    return std::nullopt;
   }
   const std::vector<std::array<Term, 3>>& facts() const { return facts_; }
 
@@ -98,8 +108,21 @@ class Universe {
     number(way, "length", 10);
     add(way, "connects", thing("junction", i % 2)), add(way, "connects", thing("junction", 2));
   }
+  void addStatement(const Term& about, const std::string& kind, const std::string& stated_class) {
+    const Term statement = thing("statement", statements_++);
+    add(statement, "statementKind", Term::literal(kind));
+    add(statement, "statedClass", Term::iri(vocabulary::clx(stated_class)));
+    add(statement, "statementEffect", Term::literal("applied"));
+    add(statement, "appliesTo", about);
+  }
+  void addStatements() {
+    for (std::size_t i = 0; i < 9; ++i) addStatement(thing("tree", i), "is not", i % 2 == 0 ? "Avenue" : "Place");
+    for (std::size_t i = 0; i < 3; ++i) addStatement(thing("barrier", i), "is", i == 0 ? "Fence" : "Wall");
+    for (std::size_t i = 0; i < 3; ++i) addStatement(thing("barrier", i), "is not", i == 1 ? "Fence" : "Barrier");
+  }
 
   std::vector<std::array<Term, 3>> facts_;
+  std::size_t statements_ = 0;
 };
 
 struct Inferred {
@@ -110,12 +133,15 @@ struct Inferred {
 /// A store in which facts are stated and withdrawn at random, and graph inferred follows.
 class ChangingStore {
  public:
-  ChangingStore(unsigned seed, std::vector<NamedText> rules) : random_(seed), rules_(std::move(rules)) {
+  ChangingStore(unsigned seed, std::vector<NamedText> rules, bool with_statements = false)
+      : random_(seed), rules_(std::move(rules)), universe_(with_statements) {
     WriteTransaction transaction = environment_->write();
     QuadWriter writer(transaction);
     loadOntology(ontologySources(shippedInputs().ontology), writer);
     for (const auto& fact : universe_.facts())
-      if (below(5) > 0) writer.add(Quad{fact[0], fact[1], fact[2], Term::iri(vocabulary::kGraphObserved)});
+      if (below(5) > 0)
+        writer.add(Quad{fact[0], fact[1], fact[2],
+                        Term::iri(std::string(Universe::graphOf(fact).value_or(vocabulary::kGraphObserved)))});
     writer.flush();
     inferAll(transaction, rules_, silence());
     transaction.commit();
@@ -141,8 +167,12 @@ class ChangingStore {
     ASSERT_EQ(butNotIn(followed, whole), "") << "too many, step " << step;
     ASSERT_EQ(by_change.record.late, anew.record.late) << "step " << step;
     ASSERT_EQ(by_change.record.outputs, anew.record.outputs) << "step " << step;
+    ASSERT_EQ(by_change.record.excluded, anew.record.excluded) << "step " << step;
+    excluded_ = anew.record.excluded.size();
   }
   std::size_t followed() const { return followed_; }
+  /// Types that statements ruled out when the last comparison was made.
+  std::size_t excluded() const { return excluded_; }
   Environment& environment() { return *environment_; }
   NoteSink sink;
 
@@ -156,8 +186,9 @@ class ChangingStore {
     const auto& facts = is_inferred || (below(6) == 0 && !inferred_.empty()) ? inferred_ : universe_.facts();
     if (facts.empty()) return;
     const auto& fact = facts[below(facts.size())];
-    const Term graph =
-        Term::iri(below(4) == 0 || &facts == &inferred_ ? vocabulary::kGraphOperator : vocabulary::kGraphObserved);
+    const std::string_view any =
+        below(4) == 0 || &facts == &inferred_ ? vocabulary::kGraphOperator : vocabulary::kGraphObserved;
+    const Term graph = Term::iri(std::string(Universe::graphOf(fact).value_or(any)));
     const QuadIds quad{writer.intern(fact[0]), writer.intern(fact[1]), writer.intern(fact[2]), writer.intern(graph)};
     reader.contains(quad) ? writer.remove(quad) : writer.add(quad);
     writer.flush();
@@ -209,7 +240,7 @@ class ChangingStore {
   Universe universe_;
   std::shared_ptr<Environment> environment_ = Environment::temporary();
   std::vector<std::array<Term, 3>> inferred_;
-  std::size_t followed_ = 0;
+  std::size_t followed_ = 0, excluded_ = 0;
 };
 
 inline int stepsOf(int few, int many) {

@@ -50,6 +50,16 @@ TEST(InferChanges, OfRulesThatBindTheirKeyFirstAreInferenceFromScratch) {
   }
 }
 
+TEST(InferChanges, OfTypesThatStatementsRuleOutAreInferenceFromScratch) {
+  std::size_t excluded = 0;
+  for (unsigned seed = 70; seed < 76; ++seed) {
+    ChangingStore store(seed, typingRules(), true);
+    expectFollowed(store);
+    excluded += store.excluded();
+  }
+  EXPECT_GT(excluded, 0U);
+}
+
 TEST(InferChanges, OfRulesThatAskOutsideOfTheirPatternsAreInferenceFromScratch) {
   for (const NamedText& rule : rulesThatAskOutside()) {
     ChangingStore store(60, {rule});

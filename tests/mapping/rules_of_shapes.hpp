@@ -53,6 +53,19 @@ inline std::vector<NamedText> joiningRules() {
                "{ ?a clx:near ?b } ?b clx:near ?c } ?c clx:minX ?x ; clx:minY ?d }")};
 }
 
+/// Rules that give types, for statements to rule some of them out: of one thing, along chains, and read by negation.
+inline std::vector<NamedText> typingRules() {
+  return {rule("1.rq",
+               "CONSTRUCT { ?a a ?k } WHERE { ?a a clx:Barrier ; clx:porosity ?p "
+               "BIND(IF(?p > 0.1, clx:Fence, clx:Wall) AS ?k) }"),
+          rule("2.rq", "CONSTRUCT { ?a a clx:Avenue } WHERE { ?a a clx:Tree ; clx:minX ?x FILTER(?x < 3) }"),
+          rule("3.rq", "CONSTRUCT { ?b a clx:Avenue } WHERE { ?a a clx:Avenue . ?a clx:near ?b }"),
+          rule("4.rq", "CONSTRUCT { ?b a clx:Avenue } WHERE { ?b clx:near ?a . ?a a clx:Avenue ; clx:minY ?y }"),
+          rule("5.rq", "CONSTRUCT { ?a clx:free ?b } WHERE { ?a clx:near ?b FILTER NOT EXISTS { ?a a clx:Place } }"),
+          rule("6.rq", "CONSTRUCT { ?a clx:tag ?p } WHERE { ?a a clx:Fence ; clx:porosity ?p }"),
+          rule("7.rq", "CONSTRUCT { ?a a clx:Wall } WHERE { ?a a clx:Barrier ; clx:width ?w }")};
+}
+
 /// Rules that read what they derive: along chains and cycles, by joins of their own facts, by paths, by superclasses,
 /// and by inverse, symmetric and transitive properties.
 inline std::vector<NamedText> recursiveRules() {

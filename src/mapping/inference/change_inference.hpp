@@ -70,6 +70,7 @@ class ChangeInference {
   bool isOtherBefore(rdf::Stage end, const rdf::Triple& fact) const;
   void addOtherBases(rdf::Stage stage, const Outputs& outputs, std::vector<rdf::Triple>& touched) const;
   void setBases(rdf::Stage stage, const RuleShape& shape, std::vector<rdf::Triple> touched, const Outputs& outputs);
+  bool isExcluded(const rdf::Triple& fact) const;
   bool feedsItself(rdf::Stage stage, const ReadTest& reads) const;
   bool hasFedItself(rdf::Stage stage, const ReadTest& reads) const;
 
@@ -84,6 +85,8 @@ class ChangeInference {
   rdf::StagedFacts facts_;
   std::unordered_map<rdf::TermId, std::vector<SeenChange>> plain_;  ///< changes of properties that are only read
   rdf::StagedClosure closure_;
+  /// Facts that statements ruled out before the change and not any more, or the other way round; sorted.
+  std::vector<rdf::Triple> reconsidered_;
   std::vector<WholeRule> whole_;
 };
 

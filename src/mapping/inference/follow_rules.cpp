@@ -138,8 +138,12 @@ bool ChangeInference::takeAwaySuspects(Stage stage, const RuleShape& shape, Outp
   std::vector<SeenChange> open;
   for (const SeenChange& change : seenChanges(endOf(stage), reads))
     if (!isSeen(endOf(stage), change) && seen.insert(change.fact).second) open.push_back(change);
-  for (std::size_t weakened = 0;;) {
-    std::vector<Triple> taken;
+  std::vector<Triple> taken;
+  for (const RuleOutput& output : outputs)
+    if (std::binary_search(reconsidered_.begin(), reconsidered_.end(), output.fact) && isExcluded(output.fact) &&
+        facts_.stateOf(output.fact).base == stage && suspects.taken.insert(output.fact).second)
+      taken.push_back(output.fact);
+  for (std::size_t weakened = 0;; taken.clear()) {
     for (; weakened < closure_.weakened().size(); ++weakened) {
       const Triple& fact = closure_.weakened()[weakened];
       const FactState state = facts_.stateOf(fact);
@@ -161,7 +165,7 @@ bool ChangeInference::takeAwaySuspects(Stage stage, const RuleShape& shape, Outp
         if (suspects.taken.insert(fact).second) taken.push_back(fact);
     }
     const std::size_t before = closure_.weakened().size();
-    setBases(stage, shape, std::move(taken), {});
+    setBases(stage, shape, taken, {});
     if (closure_.weakened().size() == before) break;
   }
   for (const Triple& fact : seen)
@@ -201,10 +205,13 @@ bool ChangeInference::deriveOn(Stage stage, const RuleShape& shape, Outputs& out
   }
 }
 
-/// Adds the facts that the rule derives and that have become known without it, or are not any more.
+/// Adds the facts that the rule derives and that have become known without it, or are not any more, or that statements
+/// rule out now, or do not any more.
 void ChangeInference::addOtherBases(Stage stage, const Outputs& outputs, std::vector<Triple>& touched) const {
   for (const RuleOutput& output : outputs)
-    if (isOtherBefore(stage, output.fact)) touched.push_back(output.fact);
+    if (isOtherBefore(stage, output.fact) ||
+        std::binary_search(reconsidered_.begin(), reconsidered_.end(), output.fact))
+      touched.push_back(output.fact);
 }
 
 /// Decides for each fact that the rule derives, or has derived, whether it holds by the rule.
@@ -224,12 +231,17 @@ void ChangeInference::setBases(Stage stage, const RuleShape& shape, std::vector<
     if (!is_base && base == stage) bases.push_back({fact, kNever});
   };
   for (const Triple& fact : touched) {
-    const bool is_base = derived.contains(fact) && facts_.stageOf(fact) >= stage;
+    const bool is_base = derived.contains(fact) && !isExcluded(fact) && facts_.stageOf(fact) >= stage;
     set(fact, is_base);
     for (const Triple& part : derivationOf(reader_, writer, fact, shape.rule)) set(part, is_base);
   }
   writer.flush();
   closure_.update(bases);
+}
+
+/// Whether a statement rules the fact out, whatever rule derives it.
+bool ChangeInference::isExcluded(const Triple& fact) const {
+  return std::binary_search(record_.excluded.begin(), record_.excluded.end(), fact);
 }
 
 /// Whether the rule reads what has come to be at its own stage: then it has to be run again.

@@ -2,12 +2,14 @@
 // Follows a change through the closure and through the rules, one stage after the other.
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <optional>
 #include <span>
 #include <utility>
 
 #include "mapping/inference/change_inference.hpp"
 #include "mapping/inference/infer_facts.hpp"
+#include "mapping/statements/excluded_types.hpp"
 #include "rdf/map_iris.hpp"
 #include "rdf/vocabulary.hpp"
 
@@ -36,7 +38,12 @@ ChangeInference::ChangeInference(rdf::WriteTransaction& transaction, const Infer
       bounds_(reader_, limits()),
       schema_(rdf::readStoredSchema(reader_, words_, allGraphs(), bounds_)),
       facts_(reader_, words_, graphs.sources, graphs.inferred, std::move(record.late)),
-      closure_(reader_, words_, schema_, facts_, bounds_) {}
+      closure_(reader_, words_, schema_, facts_, bounds_) {
+  std::vector<Triple> excluded = excludedTypes(reader_);
+  std::set_symmetric_difference(excluded.begin(), excluded.end(), record.excluded.begin(), record.excluded.end(),
+                                std::back_inserter(reconsidered_));
+  record.excluded = std::move(excluded);
+}
 
 rdf::ClosureLimits ChangeInference::limits() const {
   rdf::ClosureLimits limits = rdf::ClosureLimits::of(reader_);

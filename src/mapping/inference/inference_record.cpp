@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::string_view kKey = "inferred";
 /// Increase it when the program infers other facts, or stores the record in another form.
-constexpr std::uint32_t kVersion = 3;
+constexpr std::uint32_t kVersion = 4;
 
 /// What the record belongs to.
 struct Basis {
@@ -78,6 +78,7 @@ void storeInferenceRecord(rdf::WriteTransaction& transaction, const InferenceRec
   for (const rdf::LateFact& fact : record.late)
     late.push_back({fact.fact, fact.stage << 1U | static_cast<std::uint32_t>(fact.is_base)});
   appendList(bytes, late);
+  appendList(bytes, record.excluded);
   transaction.putBlock(tables::kMeta, kKey, bytes);
 }
 
@@ -100,7 +101,9 @@ std::optional<InferenceRecord> storedInferenceRecord(const rdf::ReadTransaction&
     record.outputs.push_back(std::move(*outputs));
   }
   const auto late = takeList<StoredLate>(bytes);
-  if (!late) return std::nullopt;
+  auto excluded = takeList<rdf::Triple>(bytes);
+  if (!late || !excluded) return std::nullopt;
+  record.excluded = std::move(*excluded);
   for (const StoredLate& fact : *late)
     record.late.push_back({fact.fact, fact.stage_and_base >> 1U, (fact.stage_and_base & 1U) != 0});
   return record;

@@ -22,6 +22,8 @@ struct InferenceRecord {
   /// Of each rule: an inference from scratch evaluates it at most so many times more, because it reads what it derives.
   std::vector<std::uint32_t> rounds;
   std::vector<rdf::LateFact> late;  ///< sorted
+  /// What rules may derive and statements rule out (excludedTypes()); sorted. `outputs` has it all the same.
+  std::vector<rdf::Triple> excluded;
   std::string reason;  ///< why a change cannot be followed: a rule and what is wrong with it; empty when it can
   std::vector<WholeRule> whole;  ///< of this inference; it is not stored
 };

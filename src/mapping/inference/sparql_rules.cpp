@@ -9,6 +9,7 @@
 #include "mapping/facts/query_names.hpp"
 #include "mapping/inference/read_test.hpp"
 #include "mapping/inference/rule_limits.hpp"
+#include "mapping/statements/excluded_types.hpp"
 #include "rdf/ontology/ontology.hpp"
 #include "rdf/ontology/schema.hpp"
 #include "rdf/store/quad_store.hpp"
@@ -54,10 +55,11 @@ bool isKnown(const rdf::QuadReader& reader, const rdf::Triple& fact, rdf::TermId
   return false;
 }
 
-std::vector<rdf::Triple> factsOf(const std::vector<RuleOutput>& outputs) {
+std::vector<rdf::Triple> factsOf(const std::vector<RuleOutput>& outputs, const std::vector<rdf::Triple>& excluded) {
   std::vector<rdf::Triple> facts;
   facts.reserve(outputs.size());
-  for (const RuleOutput& output : outputs) facts.push_back(output.fact);
+  for (const RuleOutput& output : outputs)
+    if (!std::binary_search(excluded.begin(), excluded.end(), output.fact)) facts.push_back(output.fact);
   std::sort(facts.begin(), facts.end());
   facts.erase(std::unique(facts.begin(), facts.end()), facts.end());
   return facts;
@@ -75,6 +77,7 @@ class RuleRun {
     inferred_ = writer.intern(Term::iri(rdf::vocabulary::kGraphInferred));
     writer.flush();
     history_ = reader_.idOf(Term::iri(rdf::vocabulary::kGraphHistory)).value_or(rdf::kNoGraph);
+    record_.excluded = excludedTypes(reader_);
   }
 
   void run(const NamedText& rule) {
@@ -84,7 +87,7 @@ class RuleRun {
     record_.outputs.emplace_back();
     for (std::uint32_t round = 0;; ++round) {
       std::vector<RuleOutput> outputs = evaluateRule(transaction_, shape, check_);
-      const std::vector<rdf::QuadIds> added = derive(shape, factsOf(outputs));
+      const std::vector<rdf::QuadIds> added = derive(shape, factsOf(outputs, record_.excluded));
       record_.outputs.back() = std::move(outputs);
       record_.rounds.back() = round;
       if (added.empty()) break;

@@ -22,7 +22,8 @@ void noteUnknownNames(const std::vector<NamedText>& rules, const rdf::OntologyVi
 
 /// Evaluates the rules in order. Each rule is a stratum: it sees the facts of earlier rules and its own, and is
 /// repeated until it derives nothing new. Expects the closure to be complete and keeps it so. Each derived fact names
-/// its rule by a clx:Derivation. Returns what a later inference needs to follow changes.
+/// its rule by a clx:Derivation. What statements rule out (excludedTypes()) is not derived. Returns what a later
+/// inference needs to follow changes.
 InferenceRecord runSparqlRules(rdf::WriteTransaction& transaction, const std::vector<NamedText>& rules,
                                const rdf::InferenceCheck& check = {});
 

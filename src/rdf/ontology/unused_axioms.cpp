@@ -12,9 +12,8 @@ namespace cluxel::rdf {
 
 namespace {
 
-constexpr std::array<std::string_view, 16> kProperties{"equivalentClass",
+constexpr std::array<std::string_view, 15> kProperties{"equivalentClass",
                                                        "equivalentProperty",
-                                                       "disjointWith",
                                                        "propertyDisjointWith",
                                                        "disjointUnionOf",
                                                        "members",

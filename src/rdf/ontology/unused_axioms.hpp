@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Axioms of OWL that are kept as facts, but from which the closure infers nothing.
+// Axioms of OWL that are kept as facts, but that inference does not use.
 #pragma once
 
 #include <map>
