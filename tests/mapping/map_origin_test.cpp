@@ -14,8 +14,10 @@
 #include "mapping/change/map_merge.hpp"
 #include "mapping/facts/object_geometry.hpp"
 #include "mapping/map_state.hpp"
+#include "mapping/origin_text.hpp"
 #include "mapping/small_campus.hpp"
 #include "mapping/stored_grid.hpp"
+#include "rdf/map_iris.hpp"
 
 namespace cluxel::mapping {
 namespace {
@@ -130,6 +132,29 @@ std::vector<Eigen::Vector3d> otherOrigins() {
   return {Eigen::Vector3d(0, 0, kReference_m.z()), kReference_m + Eigen::Vector3d(1600, -3200, 0),
           kReference_m + Eigen::Vector3d(1, 0, 0), kReference_m + Eigen::Vector3d(5.3, -2.7, 0.4),
           kReference_m + Eigen::Vector3d(0.01, 7.999, 3)};
+}
+
+TEST_F(MapOrigin, IsToldWithAllItsDigitsAndByWhoRefusesAnother) {
+  const Eigen::Vector3d origin = kReference_m + Eigen::Vector3d(0.5600001, 0.7800003, 0.30000001);
+  const fs::path map = built(scansWith(origin, {0, 1}));
+  const std::string root = rdf::iriOfMapRoot();
+  const MapReader reader(map);
+  for (const int axis : {0, 1, 2}) {
+    QuadIds quad;
+    const auto property = reader.quads().idOf(Term::iri(vocabulary::clx(std::string("origin") + "XYZ"[axis])));
+    ASSERT_TRUE(
+        property &&
+        reader.quads().scan({.s = reader.quads().idOf(Term::iri(root)), .p = property, .o = {}, .g = {}}).next(quad));
+    EXPECT_EQ(std::stod(reader.quads().termOf(quad.o).text), origin[axis]);
+  }
+  try {
+    extendMap(map, scansWith(kReference_m, {2}), {}, silence());
+    FAIL() << "the scans lie in another frame";
+  } catch (const Error& error) {
+    for (const Eigen::Vector3d& named : {origin, kReference_m})
+      EXPECT_NE(std::string(error.what()).find(originText(named)), std::string::npos) << error.what();
+  }
+  EXPECT_NO_THROW(extendMap(map, scansWith(origin, {2}), {}, silence()));
 }
 
 TEST_F(MapOrigin, ChangesNoObject) {

@@ -12,6 +12,7 @@
 #include "base/utc_time.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/map_reader.hpp"
+#include "mapping/origin_text.hpp"
 #include "rdf/file/map_check.hpp"
 #include "scan/scan_summary.hpp"
 #include "tasks/plots/map_plots.hpp"
@@ -256,6 +257,7 @@ ExitCode infoOfMap(const InfoOptions& options, const fs::path& file, const Sessi
       for (const mapping::Cloud& cloud : map.clouds()) printCloud(cloud);
     if (options.layers) printLayers(map.layers(), diskBytesOf(file), summary.points);
     if (!inputs.crs.empty()) std::printf("coordinate system: %s\n", inputs.crs.c_str());
+    if (!inputs.map_origin.isZero(0)) std::printf("map_origin: %s m\n", mapping::originText(inputs.map_origin).c_str());
     std::printf("built with %s\n", describeFiles(inputs).c_str());
     return ExitCode::Done;
   }
@@ -269,6 +271,8 @@ ExitCode infoOfMap(const InfoOptions& options, const fs::path& file, const Sessi
     json["disk_bytes"] = diskBytesOf(file);
   }
   if (!inputs.crs.empty()) json["crs"] = inputs.crs;
+  const Eigen::Vector3d& origin = inputs.map_origin;
+  if (!origin.isZero(0)) json["map_origin"] = {origin.x(), origin.y(), origin.z()};
   json["input_files"] = inputFilesJson(inputs);
   json["heights_by_class"] = heightsJson(figures->heights);
   json["runs"] = runsJson(figures->runs);

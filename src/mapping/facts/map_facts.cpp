@@ -10,6 +10,7 @@
 #include "base/utc_time.hpp"
 #include "mapping/facts/fact_order.hpp"
 #include "mapping/facts/object_facts.hpp"
+#include "mapping/origin_text.hpp"
 #include "rdf/map_iris.hpp"
 
 namespace cluxel::mapping {
@@ -127,11 +128,10 @@ void addMap(const MapInputs& inputs, const std::vector<Cloud>& clouds, FactSink&
   facts.type(root, rdf::vocabulary::clx("Map"));
   facts.text(root, "frame", "map");
   if (!inputs.crs.empty()) facts.text(root, "crs", inputs.crs);
-  if (!inputs.map_origin.isZero()) {
-    facts.number(root, "originX", inputs.map_origin.x());
-    facts.number(root, "originY", inputs.map_origin.y());
-    facts.number(root, "originZ", inputs.map_origin.z());
-  }
+  if (!inputs.map_origin.isZero())
+    for (const int axis : {0, 1, 2})
+      facts.term(root, std::string("origin") + "XYZ"[axis],
+                 Term::literal(exactDecimalText(inputs.map_origin[axis]), rdf::vocabulary::xsd("decimal")));
   for (const Cloud& cloud : clouds) facts.link(root, "hasCloud", facts.iri(rdf::iriOfCloud(cloud.id)));
 }
 
