@@ -20,6 +20,7 @@
 #include "rules/explain/part_run.hpp"
 #include "rules/explain/path_tree.hpp"
 #include "rules/explain/why_not.hpp"
+#include "tasks/derived_classes.hpp"
 #include "tasks/named_class.hpp"
 #include "tasks/stated_of_things.hpp"
 #include "tasks/thing_names.hpp"
@@ -236,7 +237,9 @@ ExplanationTexts explainWhyNot(const mapping::MapReader& map, const std::string&
   const WhyNotOfThing thing = whyNotOf(map, rules, inputs, name, class_name);
   auto json = nlohmann::ordered_json::parse(jsonOf(thing.why, rules));
   const std::string stated = statedOf(map, rules, thing.owner, json);
-  return {stated + thing.headline + "\n" + textOf(thing.why, rules), json.dump(2)};
+  const std::string derived =
+      sparqlRulesText(map, rules, inputs, thingNamed(map, name).object, thing.why.class_iri, json);
+  return {stated + thing.headline + "\n" + derived + textOf(thing.why, rules), json.dump(2)};
 }
 
 std::string explanationGraph(const mapping::MapReader& map, const std::string& name, const std::string& class_name) {
@@ -271,7 +274,8 @@ ExplanationTexts explainThing(const mapping::MapReader& map, const std::string& 
   std::string text = textOf(explained.explanation, rules, scene);
   if (named.object) {
     json["number"] = named.number;
-    text = "object #" + std::to_string(named.number) + "\n" + historyOf(map, *named.object, json) + text;
+    text = "object #" + std::to_string(named.number) + "\n" + historyOf(map, *named.object, json) +
+           derivedClassesText(map, rules, *named.object, json) + text;
   } else {
     text = statedOf(map, rules, explained.explanation.object, json) + text;
   }

@@ -13,6 +13,7 @@
 #include "rdf/map_iris.hpp"
 #include "serve/resources/map_resources.hpp"
 #include "sparql/query_engine.hpp"
+#include "tasks/explanation.hpp"
 #include "tasks/inventory/inventory.hpp"
 #include "tasks/search/search_tour.hpp"
 #include "tasks/ways/class_cells.hpp"
@@ -166,6 +167,29 @@ TEST_F(ObjectsOfAClass, AreListedAsTheClassThatWasAskedFor) {
     const std::string& other = asked(fence).contains(item.object) ? fence : vehicle;
     EXPECT_EQ(item.class_iri, ontology.isA(own, vehicle) ? own : other);
   }
+}
+
+TEST_F(ObjectsOfAClass, AreExplainedWithTheRulesThatSaySo) {
+  for (const std::string& iri : asked(fence)) {
+    const tasks::ExplanationTexts texts = tasks::explainThing(map, iri);
+    EXPECT_NE(texts.text.find("also clx:Fence, by SPARQL rule 35_fences.rq\n"), std::string::npos) << texts.text;
+    bool is_told = false;
+    for (const auto& derived : nlohmann::json::parse(texts.json)["derived"])
+      is_told = is_told || (derived["class"] == "clx:Fence" && derived["rule"] == "35_fences.rq");
+    EXPECT_TRUE(is_told) << texts.json;
+    const tasks::ExplanationTexts why_not = tasks::explainWhyNot(map, iri, "clx:Fence");
+    EXPECT_NE(why_not.text.find("it is clx:Fence already\n"), std::string::npos) << why_not.text;
+    EXPECT_TRUE(nlohmann::json::parse(why_not.json)["is_of_class"].get<bool>());
+  }
+  for (const std::string& iri : asked(rdf::vocabulary::clx("Barrier")))
+    if (!asked(fence).contains(iri)) {
+      const std::string why_not = tasks::explainWhyNot(map, iri, "clx:Fence").text;
+      EXPECT_EQ(why_not.find("already"), std::string::npos) << why_not;
+      EXPECT_NE(why_not.find("SPARQL rule 35_fences.rq can say clx:Fence of an object, and does not of this one\n"),
+                std::string::npos)
+          << why_not;
+      break;
+    }
 }
 
 /// An object that is named by a rule and is not in the map, and names that are no hash, make no trouble.

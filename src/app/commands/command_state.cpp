@@ -12,6 +12,7 @@
 #include "mapping/facts/semantic_layer.hpp"
 #include "rdf/map_iris.hpp"
 #include "rules/language/rule_loader.hpp"
+#include "tasks/derived_classes.hpp"
 #include "tasks/named_class.hpp"
 #include "tasks/thing_names.hpp"
 
@@ -113,6 +114,18 @@ std::vector<std::string> replaceEarlier(const mapping::MapReader& map, const Con
   return notes;
 }
 
+/// What SPARQL rules say of the object now, where a statement is about its class: the report tells of the other rules.
+std::vector<std::string> whatSparqlRulesSay(const mapping::MapReader& map, const ContentHash& object,
+                                            const mapping::StatementEdit& edit) {
+  std::vector<std::string> notes;
+  if (std::none_of(edit.added.begin(), edit.added.end(),
+                   [](const Statement& added) { return singleOf(added) == Single::Class; }))
+    return notes;
+  for (const tasks::DerivedClass& derived : tasks::derivedClassesOf(map.quads(), rdf::iriOfObject(object)))
+    notes.push_back("before, SPARQL rule " + derived.file + " said of it " + classText(derived.class_iri));
+  return notes;
+}
+
 /// The new statements about the object, and the earlier ones that they replace.
 std::vector<std::string> addAboutObject(const mapping::MapReader& map, const StateOptions& options,
                                         mapping::StatementEdit& edit, ProgressSink& sink) {
@@ -132,7 +145,10 @@ std::vector<std::string> addAboutObject(const mapping::MapReader& map, const Sta
   if (!edit.added.empty()) refuseWholeClass(map, object);
   if (!options.label.empty()) add(StatementKind::Fact, rdf::vocabulary::rdfs("label"), Term::literal(options.label));
   if (!options.note.empty()) add(StatementKind::Fact, rdf::vocabulary::rdfs("comment"), Term::literal(options.note));
-  return replaceEarlier(map, object, edit);
+  std::vector<std::string> notes = replaceEarlier(map, object, edit);
+  const std::vector<std::string> said = whatSparqlRulesSay(map, object, edit);
+  notes.insert(notes.end(), said.begin(), said.end());
+  return notes;
 }
 
 ExitCode change(const StateOptions& options, Session& session) {

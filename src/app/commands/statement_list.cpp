@@ -13,9 +13,13 @@ namespace {
 
 using mapping::KnownStatement;
 
+}  // namespace
+
 std::string classText(const std::string& iri) {
   return iri.starts_with(rdf::vocabulary::kClx) ? mapping::localName(iri) : "<" + iri + ">";
 }
+
+namespace {
 
 std::string lineOfKnown(const KnownStatement& known) {
   std::string line = known.statement.id().hex() + "  " + textOf(known.statement) + "  " + known.effect;

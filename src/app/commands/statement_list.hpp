@@ -10,6 +10,8 @@
 
 namespace cluxel::app {
 
+/// "Tree" of the vocabulary, the IRI of another class.
+std::string classText(const std::string& iri);
 /// "4f0a… is clx:StreetSign: applied to …, the rules say clx:Lamp".
 std::string lineOf(const mapping::StatementOutcome& outcome);
 /// The same as an object, with the keys of printStatements() but for the author and the time.
