@@ -29,7 +29,7 @@ std::vector<Term> valuesOf(const rdf::QuadReader& quads, rdf::TermId subject, co
 }
 
 /// Whether the rule may give the class itself: it names it, and makes types.
-bool mayDerive(const NamedText& rule, const std::string& class_iri) {
+bool mayDerive(const mapping::NamedText& rule, const std::string& class_iri) {
   const mapping::RuleShape shape = mapping::shapeOf(rule);
   const std::string type = rdf::vocabulary::rdf("type");
   bool by_variable = false;
@@ -40,7 +40,7 @@ bool mayDerive(const NamedText& rule, const std::string& class_iri) {
   }
   // A variable takes the class from an expression, where it is written in full or with a prefix.
   if (!by_variable) return false;
-  const std::string local = ":" + rdf::localName(class_iri);
+  const std::string local = ":" + mapping::localName(class_iri);
   for (std::size_t at = rule.text.find(local); at != std::string::npos; at = rule.text.find(local, at + 1)) {
     const std::size_t end = at + local.size();
     if (end == rule.text.size() ||
@@ -104,7 +104,7 @@ std::string sparqlRulesText(const mapping::MapReader& map, const rules::RuleSet&
     if (isRuledOut(map.quads(), *object, class_iri))
       text += "an operator statement rules out that a SPARQL rule says " + name + "\n";
   }
-  for (const NamedText& rule : inputs.sparql_rules)
+  for (const mapping::NamedText& rule : inputs.sparql_rules)
     if (object && mayDerive(rule, class_iri)) {
       const std::string file = mapping::ruleFileName(rule);
       json["sparql_rules"].push_back(file);

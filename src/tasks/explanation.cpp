@@ -274,8 +274,9 @@ ExplanationTexts explainThing(const mapping::MapReader& map, const std::string& 
   std::string text = textOf(explained.explanation, rules, scene);
   if (named.object) {
     json["number"] = named.number;
-    text = "object #" + std::to_string(named.number) + "\n" + historyOf(map, *named.object, json) +
-           derivedClassesText(map, rules, *named.object, json) + text;
+    const std::string history = historyOf(map, *named.object, json);
+    const std::string derived = derivedClassesText(map, rules, *named.object, json);
+    text = "object #" + std::to_string(named.number) + "\n" + history + derived + text;
   } else {
     text = statedOf(map, rules, explained.explanation.object, json) + text;
   }

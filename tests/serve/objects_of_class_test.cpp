@@ -174,7 +174,8 @@ TEST_F(ObjectsOfAClass, AreExplainedWithTheRulesThatSaySo) {
     const tasks::ExplanationTexts texts = tasks::explainThing(map, iri);
     EXPECT_NE(texts.text.find("also clx:Fence, by SPARQL rule 35_fences.rq\n"), std::string::npos) << texts.text;
     bool is_told = false;
-    for (const auto& derived : nlohmann::json::parse(texts.json)["derived"])
+    const auto json = nlohmann::json::parse(texts.json);
+    for (const auto& derived : json["derived"])
       is_told = is_told || (derived["class"] == "clx:Fence" && derived["rule"] == "35_fences.rq");
     EXPECT_TRUE(is_told) << texts.json;
     const tasks::ExplanationTexts why_not = tasks::explainWhyNot(map, iri, "clx:Fence");
