@@ -237,7 +237,7 @@ std::string jsonOf(const Explanation& explanation, const RuleSet& rules, const p
 
 std::string textOf(const WhyNot& why, const RuleSet& rules) {
   std::string text = "\nwhy not " + rules.shorten(why.class_iri) + ":\n";
-  if (why.rules.empty()) text += "  no rule makes this class\n";
+  if (why.rules.empty()) text += "  no rule for objects makes this class\n";
   for (const RuleVerdict& verdict : why.rules) {
     const Decision& decision = verdict.decision;
     text += "  " + decision.rule_id + ": " + std::string(nameOf(verdict.nearness));
