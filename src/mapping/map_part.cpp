@@ -74,11 +74,12 @@ std::optional<MapPart> partOfMap(const rdf::ReadTransaction& transaction, TileSt
   return part;
 }
 
-std::size_t cluxelsIn(const rdf::ReadTransaction& transaction, const perception::TileSet& tiles) {
+bool haveMoreCluxels(const rdf::ReadTransaction& transaction, const perception::TileSet& tiles, std::size_t most) {
   std::size_t cluxels = 0;
-  for (const perception::TileKey& tile : tiles)
+  return std::any_of(tiles.begin(), tiles.end(), [&](const perception::TileKey& tile) {
     if (const std::optional<TileLayer> layer = storedLayer(transaction, tile)) cluxels += layer->size();
-  return cluxels;
+    return cluxels > most;
+  });
 }
 
 ThingPlace placeOfObject(const rdf::ReadTransaction& transaction, const ContentHash& object) {

@@ -33,8 +33,8 @@ struct PartSize {
   double near_m = 0;  ///< with the tiles of the objects within this distance (tilesOfNearObjects())
   std::optional<std::size_t> most_cluxels = std::nullopt;  ///< no part when there are more
 };
-/// What the layers of the tiles tell. Cost: reads these.
-std::size_t cluxelsIn(const rdf::ReadTransaction& transaction, const perception::TileSet& tiles);
+/// Whether tiles have more than `most` cluxels. Cost: reads the layers of tiles until that is known.
+bool haveMoreCluxels(const rdf::ReadTransaction& transaction, const perception::TileSet& tiles, std::size_t most);
 
 /// Where an object, or a primitive, is. Cost: of an object that of its tiles; of a primitive some microseconds a tile
 /// of the map.

@@ -108,7 +108,7 @@ struct MapReader::Impl {
   }
 
   bool isLarger(const perception::TileSet& tiles, const PartSize& size) const {
-    return size.most_cluxels && cluxelsIn(transaction, tiles) > *size.most_cluxels;
+    return size.most_cluxels && haveMoreCluxels(transaction, tiles, *size.most_cluxels);
   }
 
   std::optional<MapPart> partIn(const perception::TileSet& tiles) {

@@ -108,32 +108,6 @@ TEST(Presence, OfWhatCameBackHasNoEnd) {
   EXPECT_EQ(twice->seen_empty_s, 0);
 }
 
-/// Within a visit things look different from where the sensor is next.
-TEST(Presence, WithinAVisitMoreMustShowThatAThingLeft) {
-  const auto endAfter = [](double pause_s, std::size_t seen_through) {
-    const std::vector<ScanVotes> history{votes(0, 50, 0), votes(60, 45, 2), votes(60 + pause_s, 0, seen_through)};
-    return presenceOf(history, visibilityOf(history), {})->seen_through_s;
-  };
-  constexpr double kMinute_s = 60;
-  EXPECT_FALSE(endAfter(kMinute_s, 20)) << "40 % of its places";
-  EXPECT_EQ(endAfter(kPauseOfVisits_s, 20), 60 + kPauseOfVisits_s);
-  EXPECT_EQ(endAfter(kMinute_s, 40), 120) << "a car that drove off";
-  const std::vector<ScanVotes> twice{votes(0, 50, 0), votes(60, 0, 20), votes(90'000, 0, 20)};
-  EXPECT_EQ(presenceOf(twice, visibilityOf(twice), {})->seen_through_s, 90'000) << "the other visit shows it";
-}
-
-TEST(Presence, OfAHedgeThatIsSeenAlongHasNoEnd) {
-  std::vector<ScanVotes> hedge{votes(1, 120, 5), votes(2, 120, 5),  votes(3, 115, 9), votes(4, 110, 10),
-                               votes(5, 49, 95), votes(6, 43, 99), votes(7, 34, 108)};
-  for (const double time_s : {8., 90'000.}) {
-    hedge.push_back(votes(time_s, 30, 111));
-    const Visibility thing = visibilityOf(hedge);
-    EXPECT_LT(logOddsOfPresence(std::span(hedge).last(1), thing.share_of_hits, {}), -6);
-    EXPECT_FALSE(presenceOf(hedge, thing, {})->seen_through_s);
-    hedge.pop_back();
-  }
-}
-
 TEST(Presence, IsMirroredWhenTimeRunsBackwards) {
   std::mt19937 random(12);
   std::size_t left = 0, came = 0;

@@ -27,30 +27,40 @@ Eigen::Vector3d endOf(const Eigen::Vector3d& start, const Eigen::Vector3d& way, 
   return start + range_m * way;
 }
 
-/// From all rays, without an index. Rays that start within `view_m` count.
-bool isLookedAt(const std::vector<Ray>& rays, const StandingPlace& place, double view_m) {
-  constexpr double near_m = 0.15, measured_m = 0.5, behind_m = 0.40, nearest_m = 0.3;
-  int passed = 0, stopped = 0;
-  for (int i = 0; i == 0 || i * 0.3 <= std::max(place.height_m, 0.3) + 1e-9; ++i) {
-    const Eigen::Vector3d point = place.foot + Eigen::Vector3d(0, 0, 0.3 * i);
-    for (const Ray& ray : rays) {
-      if ((ray.start - place.foot).head<2>().norm() > view_m) continue;
-      const Eigen::Vector3d way = (ray.end - ray.start).normalized(), to_point = point - ray.start;
-      const double range_m = (ray.end - ray.start).norm(), along_m = to_point.dot(way);
-      const double aside_m = (to_point - along_m * way).norm();
-      if (along_m <= 0 || aside_m > measured_m || to_point.norm() < nearest_m) continue;
-      if (std::abs(range_m - along_m) <= measured_m) return true;
-      if (i > 0 && aside_m <= near_m) ++(range_m >= along_m + behind_m ? passed : stopped);
+/// From all rays, without an index. Rays that start within `view_m` count, those of each of the starts by themselves.
+bool isLookedAt(const std::vector<Ray>& rays, const std::vector<Eigen::Vector3d>& starts, const StandingPlace& place,
+                double view_m) {
+  constexpr double near_m = 0.15, measured_m = 0.5, hit_m = 0.25, behind_m = 0.40, nearest_m = 0.3;
+  std::vector<double> heights;
+  const double top_m = std::max(place.height_m, 0.3);
+  for (int i = 0; i == 0 || i * 0.3 <= top_m + 1e-9; ++i) heights.push_back(0.3 * i);
+  if (top_m - heights.back() > 0.15) heights.push_back(top_m);
+  for (const Eigen::Vector3d& start : starts) {
+    if ((start - place.foot).head<2>().norm() > view_m) continue;
+    int passed = 0, stopped = 0;
+    for (const double height : heights) {
+      const Eigen::Vector3d point = place.foot + Eigen::Vector3d(0, 0, height);
+      for (const Ray& ray : rays) {
+        if (ray.start != start) continue;
+        const Eigen::Vector3d way = (ray.end - ray.start).normalized(), to_point = point - ray.start;
+        const double range_m = (ray.end - ray.start).norm(), along_m = to_point.dot(way);
+        const double aside_m = (to_point - along_m * way).norm();
+        if (along_m <= 0 || aside_m > measured_m || to_point.norm() < nearest_m) continue;
+        if (std::abs(range_m - along_m) <= hit_m) return true;
+        if (height > 0 && aside_m <= near_m) ++(range_m >= along_m + behind_m ? passed : stopped);
+      }
     }
+    if (passed >= 3 && stopped <= passed) return true;
   }
-  return passed >= 3 && stopped <= passed;
+  return false;
 }
 
 TEST(StandingPlace, IsLookedAtAsAllRaysOneByOneTell) {
   std::mt19937 random(21);
   std::uniform_real_distribution<double> around(-3.1415, 3.1415), up(-0.7, 0.03), x(-20, 20), height(0, 4);
   std::vector<Ray> rays;
-  for (const Eigen::Vector3d& start : {Eigen::Vector3d(0, 0, 1.8), Eigen::Vector3d(-6, 5, 1.5)})
+  const std::vector<Eigen::Vector3d> starts{{0, 0, 1.8}, {-6, 5, 1.5}};
+  for (const Eigen::Vector3d& start : starts)
     for (int i = 0; i < 12'000; ++i) {
       const double elevation = up(random), azimuth = around(random);
       const Eigen::Vector3d way(std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
@@ -62,7 +72,7 @@ TEST(StandingPlace, IsLookedAtAsAllRaysOneByOneTell) {
   for (int i = 0; i < 600; ++i) {
     const StandingPlace place{{x(random), x(random), 0}, height(random)};
     const double view_m = 5 + i % 20;
-    const bool expected = isLookedAt(rays, place, view_m);
+    const bool expected = isLookedAt(rays, starts, place, view_m);
     ASSERT_EQ(looksAt(scan, place, view_m), expected) << place.foot.transpose() << ", " << place.height_m;
     ++found[expected ? 1 : 0];
   }
@@ -93,12 +103,39 @@ TEST(StandingPlace, IsSeenWhenMoreOfTheThingIsSeenThanHidden) {
   EXPECT_FALSE(looksAt(hidden, high, 7)) << "too far away";
 }
 
+/// A scan along a street has both: rays that a wall stops, and rays that start beyond it.
+TEST(StandingPlace, IsSeenFromWhereNothingHidesIt) {
+  std::vector<Ray> rays;
+  const Eigen::Vector3d hidden(0, 0, 1.5), free(8, 10, 1.5);
+  for (double y = -2; y <= 2; y += 0.05)
+    for (double z = 0.4; z <= 3; z += 0.1) {
+      const Eigen::Vector3d way = Eigen::Vector3d(12, y, z) - hidden;
+      rays.push_back({hidden, hidden + way / 3});
+    }
+  const StandingPlace place{{8, 0, 0}, 1.5};
+  EXPECT_FALSE(looksAt(ScanRays(scanOfRays(rays)), place, 25));
+  for (double x = 7.5; x <= 8.5; x += 0.1)
+    for (double z = 0.4; z <= 2; z += 0.3) rays.push_back({free, Eigen::Vector3d(x, -4, z)});
+  EXPECT_TRUE(looksAt(ScanRays(scanOfRays(rays)), place, 25));
+}
+
+TEST(StandingPlace, BehindAWallIsNotSeen) {
+  const Eigen::Vector3d start(0, 0, 1.5);
+  std::vector<Ray> rays;
+  for (double y = -2; y <= 2; y += 0.05)
+    for (double z = 0.05; z <= 3; z += 0.1) rays.push_back({start, Eigen::Vector3d(8, y, z)});
+  const ScanRays scan(scanOfRays(rays));
+  EXPECT_FALSE(looksAt(scan, {{8.35, 0, 0}, 1}, 25));
+  EXPECT_TRUE(looksAt(scan, {{8.1, 0, 0}, 1}, 25)) << "an entry is no more exact";
+}
+
 TEST(StandingPlace, OfHugeOrNoHeightHasFewPoints) {
   EXPECT_EQ(pointsOf({{0, 0, 5}, 1e300}).size(), 101U);
   EXPECT_EQ(pointsOf({{0, 0, 5}, -1}).size(), 2U);
   const std::vector<Eigen::Vector3d> points = pointsOf({{1, 2, 5}, 0.9});
   ASSERT_EQ(points.size(), 4U);
   EXPECT_NEAR(points.back().z(), 5.9, 1e-9);
+  EXPECT_NEAR(pointsOf({{1, 2, 5}, 1.19}).back().z(), 6.19, 1e-9) << "the top, 0.29 m above the last step";
 }
 
 }  // namespace

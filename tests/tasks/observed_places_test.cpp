@@ -82,7 +82,6 @@ TEST(QuestionsOfACampus, PlacesAreObservedWhereTheTruthHasFreeSight) {
 
 TEST(QuestionsOfACampus, MeasuredPlacesAreObserved) {
   const MapReader& map = CampusMap::shared().map();
-  const auto ground = mapping::groundOfTiles(map);
   std::vector<AskedPlace> places;
   for (const Cloud& cloud : map.clouds()) {
     const scan::Scan scan = map.scanOf(cloud.id);

@@ -50,38 +50,6 @@ std::optional<Interval> timesOf(std::span<const ScanVotes> votes, const Visibili
   return there;
 }
 
-/// The share of hits of the scan that hit fewest of a thing's places; scans that tell of few places do not count.
-double leastShareOfHits(std::span<const ScanVotes> while_there, double share_of_hits) {
-  constexpr double kEnoughPlaces = 8;
-  for (const ScanVotes& vote : while_there)
-    if (vote.hits.any() && count(vote.hits) + count(vote.seen_through) >= kEnoughPlaces)
-      share_of_hits = std::min(share_of_hits, shareOfHits({&vote, 1}));
-  return share_of_hits;
-}
-
-bool showAbsenceWithinVisit(std::span<const ScanVotes> votes, const Visibility& thing, PresenceParams params) {
-  params.decided = params.decided_within_visit, params.min_share = params.min_share_within_visit;
-  return showAbsence(votes, thing, params);
-}
-
-/// The scans after the first pause that follows `seen_s`.
-std::span<const ScanVotes> ofLaterVisits(std::span<const ScanVotes> after, double seen_s) {
-  std::size_t i = 0;
-  for (; i < after.size() && after[i].time_s - seen_s < kPauseOfVisits_s; ++i) seen_s = after[i].time_s;
-  return after.subspan(i);
-}
-
-/// The scans before the last pause that precedes `seen_s`.
-std::span<const ScanVotes> ofEarlierVisits(std::span<const ScanVotes> before, double seen_s) {
-  std::size_t i = before.size();
-  for (; i > 0 && seen_s - before[i - 1].time_s < kPauseOfVisits_s; --i) seen_s = before[i - 1].time_s;
-  return before.first(i);
-}
-
-bool seesThrough(const ScanVotes& vote) {
-  return vote.seen_through.any();
-}
-
 }  // namespace
 
 void addVotes(std::vector<ScanVotes>& votes, const ScanVotes& scan) {
@@ -138,19 +106,12 @@ std::optional<Presence> presenceOf(std::span<const ScanVotes> votes, const Visib
   const std::optional<Interval> there = timesOf(votes, thing, params);
   if (!there) return std::nullopt;
   Presence presence{votes[there->begin].time_s, votes[there->end - 1].time_s, std::nullopt, std::nullopt};
-  const auto while_there = votes.subspan(there->begin, there->end - there->begin);
-  const Visibility seen{leastShareOfHits(while_there, thing.share_of_hits), thing.places};
-  auto before = votes.first(there->begin), after = votes.subspan(there->end);
-  const auto earlier = ofEarlierVisits(before, presence.first_seen_s),
-             later = ofLaterVisits(after, presence.last_seen_s);
-  const bool left_between_visits = showAbsence(later, seen, params),
-             came_between_visits = showAbsence(earlier, seen, params);
-  if (came_between_visits) before = earlier;
-  if (left_between_visits) after = later;
-  if (came_between_visits || showAbsenceWithinVisit(before, seen, params))
-    presence.seen_empty_s = std::find_if(before.rbegin(), before.rend(), seesThrough)->time_s;
-  if (left_between_visits || showAbsenceWithinVisit(after, seen, params))
-    presence.seen_through_s = std::find_if(after.begin(), after.end(), seesThrough)->time_s;
+  const auto sawThrough = [](const ScanVotes& vote) { return vote.seen_through.any(); };
+  const auto before = votes.first(there->begin), after = votes.subspan(there->end);
+  if (showAbsence(before, thing, params))
+    presence.seen_empty_s = std::find_if(before.rbegin(), before.rend(), sawThrough)->time_s;
+  if (showAbsence(after, thing, params))
+    presence.seen_through_s = std::find_if(after.begin(), after.end(), sawThrough)->time_s;
   return presence;
 }
 

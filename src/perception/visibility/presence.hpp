@@ -11,9 +11,6 @@
 
 namespace cluxel::perception {
 
-/// Scans with such a pause between them, or a longer one, belong to different visits.
-inline constexpr double kPauseOfVisits_s = 1800;
-
 /// Places on a thing: at most so many are compared with rays.
 inline constexpr std::size_t kMaxPlaces = 256;
 using PlaceSet = std::bitset<kMaxPlaces>;
@@ -35,9 +32,6 @@ struct PresenceParams {
   double decided = 6;
   /// ... and this share of the places that were ever hit is seen through and not hit.
   double min_share = 0.2;
-  /// The same where it would have left, or come, within a visit. There most things only look different from where the
-  /// sensor is next, and few leave.
-  double decided_within_visit = 12, min_share_within_visit = 0.6;
 };
 
 /// From when to when a thing was there, as far as rays tell. It may have been away in between.
@@ -72,10 +66,8 @@ bool showAbsence(std::span<const ScanVotes> votes, const Visibility& thing, cons
 
 /// The thing was there in the interval with the largest sum of log-odds, and in each earlier or later interval whose
 /// sum is `decided` or more: what drove off and came back is there. Before the first of them or after the last the
-/// thing was not there when showAbsence() holds of scans of other visits, or, with the limits within a visit, of all
-/// those scans. A pause counts between scans that tell of the thing. These scans are weighed with the share of hits of
-/// the scan that hit the thing least while it was there: seen along, a hedge lets more rays through. `votes` are sorted
-/// by time, one element a time. Absent when no scan speaks for it.
+/// thing was not there when showAbsence() holds of those scans. `votes` are sorted by time, one element a time. Absent
+/// when no scan speaks for it.
 std::optional<Presence> presenceOf(std::span<const ScanVotes> votes, const Visibility& thing,
                                    const PresenceParams& params);
 

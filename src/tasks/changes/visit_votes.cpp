@@ -62,7 +62,7 @@ LookCounts countsOf(const perception::ScanVotes& vote) {
 
 Visits::Visits(std::span<const double> times_s, double since_s) : since_s_(since_s) {
   for (std::size_t i = 0; i < times_s.size(); ++i) {
-    const bool begins = i == 0 || times_s[i] - times_s[i - 1] >= perception::kPauseOfVisits_s ||
+    const bool begins = i == 0 || times_s[i] - times_s[i - 1] >= kPauseOfVisits_s ||
                         (times_s[i - 1] < since_s && times_s[i] >= since_s);
     if (begins) begins_s_.push_back(times_s[i]);
     of_scan_.push_back(static_cast<std::uint32_t>(begins_s_.size() - 1));

@@ -12,6 +12,9 @@
 
 namespace cluxel::tasks {
 
+/// Scans with such a pause between them, or a longer one, belong to different visits.
+inline constexpr double kPauseOfVisits_s = 1800;
+
 /// The visits of scans with a time and a pose. A visit ends where the times that are compared meet.
 class Visits {
  public:
