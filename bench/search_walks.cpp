@@ -153,13 +153,12 @@ double searchLength(const SearchWorld& world, const std::vector<rdf::UsualPlace>
   constexpr double missed = 0.1;         // a place that was looked at may still hide something
   constexpr double nothing_left = 1e-3;  // of the probability of the whole site, at the best stop
   const tasks::TerrainGrid terrain = world.terrain();
-  const rdf::OntologyView ontology = ontologyViewOf(world.map().quads());
   Walker walker(world);
   tasks::SearchParams search;
   search.view_m = world.params().view_m;
   search.eye_m = world.params().eye_m;
   tasks::SearchField field = fieldOf(world.frame(), knownShare(world.map(), terrain, walker.sight(), search),
-                                     evidenceOf(world.map(), terrain, ontology, places, tasks::goneAmong(world.map())));
+                                     evidenceOf(world.map(), terrain, places, tasks::goneAmong(world.map())));
   tasks::TourParams tour;
   tour.max_stops = 1;
   while (!walker.isDone()) {

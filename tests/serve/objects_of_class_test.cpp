@@ -98,7 +98,7 @@ class ObjectsOfAClass : public testing::Test {
     }
   }
 
-  static Names served(const ServedMap& map, const std::string& class_iri) {
+  static Names served(ServedMap& map, const std::string& class_iri) {
     const HttpRequest request;
     const Target target{{}, true, {{"class", class_iri}, {"limit", "10000"}}};
     const auto json = nlohmann::json::parse(answerObjects(map, {request, target, {}}).body);
@@ -119,7 +119,7 @@ TEST_F(ObjectsOfAClass, AreThoseOfAQueryWhoeverAsks) {
   ASSERT_FALSE(asked(fence).empty());
   ASSERT_FALSE(asked(kOak).empty());
   ASSERT_GT(asked(vehicle).size(), 1U);
-  const ServedMap served_map("map", file);
+  ServedMap served_map("map", file);
   const Map facade = Map::open(file);
   for (const rdf::OntologyClass& known : ontology.classes) {
     const Names expected = asked(known.iri);
