@@ -19,8 +19,8 @@ const OWNERS = `PREFIX clx: <https://w3id.org/cluxel/ontology#> PREFIX sosa: <ht
 SELECT ?part ?object { ?part clx:partOf|clx:primitiveOf|sosa:hasFeatureOfInterest ?object }`;
 const HISTORY = 'https://w3id.org/cluxel/graph/history';
 const DOUBTS = {
-  times: 'Times as text may be written otherwise than in the map, where some have no six digits after the point: cluxel query tells them as they are written.',
-  numbers: 'Numbers as text may be written otherwise than in the map, such as 2 for 2.0: cluxel query tells them as they are written.',
+  texts: 'Times and numbers as text may be written otherwise, such as 2 for 2.0: cluxel query tells them as they are written.',
+  joined: 'GROUP_CONCAT(DISTINCT …) joins the same text once here; cluxel query joins it once for each value, such as 2 and "2". Write DISTINCT STR(…) for the same in both.',
 };
 const RANKED = /\bORDER\s+BY\b/i;
 

@@ -17,7 +17,7 @@ export interface Graph { form: 'graph'; triples: RdfTerm[][] }
  * `doubts`: what texts that it makes of values may be written otherwise by `cluxel query`.
  */
 export type Answer = (Rows | Truth | Graph) &
-  { milliseconds: number; unknown: UnknownName[]; unbound: string[]; doubts: ('times' | 'numbers')[] };
+  { milliseconds: number; unknown: UnknownName[]; unbound: string[]; doubts: ('texts' | 'joined')[] };
 
 export interface Load { kind: 'load'; engine: ArrayBuffer; terms: string; quads: ArrayBuffer }
 export interface Ask { kind: 'ask'; id: number; text: string }

@@ -39,3 +39,15 @@ export function* nquadsOf(termText: string, quads: Uint8Array): Generator<string
   }
   yield lines.join('');
 }
+
+/** The property and the object of each quad, as places among the terms. */
+export function* objectsOf(quads: Uint8Array): Generator<[number, number]> {
+  const numbers = new Numbers(quads);
+  while (!numbers.isAtEnd) {
+    numbers.next();  // the graph
+    for (let left = numbers.next(); left > 0; --left) {
+      numbers.next();  // the subject
+      yield [numbers.next(), numbers.next()];
+    }
+  }
+}

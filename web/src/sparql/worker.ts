@@ -3,11 +3,12 @@
 // `cluxel query`: the union of all graphs, or what FROM names.
 import init, { Store } from 'oxigraph/web.js';
 import type { Answer, Ask, FromWorker, Load, RdfTerm, ToWorker } from './answers';
+import { uncheckedProperties } from './checked_forms';
 import { namesDataset } from './dataset';
-import { areFullTimes, timesIn } from './lexical_times';
+import { timesIn } from './lexical_times';
 import { missingPrefixes, namesIn, unboundIn, undeclaredPrefix, type UnknownName } from './names';
 import { nquadsOf } from './packed_quads';
-import { withStoredText } from './stored_text';
+import { readsAnyOf, withStoredText } from './stored_text';
 
 interface EngineTerm {
   termType: string;
@@ -16,8 +17,11 @@ interface EngineTerm {
   language?: string;
 }
 
-/** The map, and a store without quads, which tells the form of a query at once. */
-interface Stores { map: Store; blank: Store; times: Map<string, string>; areFull: boolean }
+/**
+ * The map, and a store without quads, which tells the form of a query at once. `unchecked`: the properties with values of
+ * which the engine loses the text.
+ */
+interface Stores { map: Store; blank: Store; times: Map<string, string>; unchecked: Set<string> }
 
 const DATE_TIME = 'http://www.w3.org/2001/XMLSchema#dateTime';
 const UNKNOWN_FUNCTION = /^The custom function <(.*)> is not supported$/;
@@ -29,9 +33,10 @@ async function load(message: Load): Promise<void> {
   const start = performance.now();
   await init({ module_or_path: await WebAssembly.compile(message.engine) });
   const map = new Store();
-  for (const piece of nquadsOf(message.terms, new Uint8Array(message.quads)))
+  const quads = new Uint8Array(message.quads);
+  for (const piece of nquadsOf(message.terms, quads))
     map.load(piece, { format: 'application/n-quads', no_transaction: true, lenient: true });
-  stores = { map, blank: new Store(), times: timesIn(message.terms), areFull: areFullTimes(message.terms) };
+  stores = { map, blank: new Store(), times: timesIn(message.terms), unchecked: uncheckedProperties(message.terms, quads) };
   scope.postMessage({ kind: 'loaded', quads: map.size, milliseconds: performance.now() - start });
 }
 
@@ -80,20 +85,20 @@ function unknownNames(map: Store, text: string): UnknownName[] {
 }
 
 /** The question for the engine, and what `cluxel query` may write otherwise in the texts that it makes. */
-function askable(blank: Store, text: string, areFull: boolean): { asked: string; doubts: Answer['doubts'] } {
+function askable(blank: Store, text: string, unchecked: Set<string>): { asked: string; doubts: Answer['doubts'] } {
   const stored = withStoredText(text), isKept = isReadable(blank, stored.text);  // a label of a blank node may stand once
   const doubts: Answer['doubts'] = [];
-  const isSure = isKept && stored.isWhole;
-  if (stored.makesText && !(isSure && areFull)) doubts.push('times');
-  if (stored.makesText && !(isSure && !stored.isDoubtful)) doubts.push('numbers');
+  const isSure = isKept && stored.isWhole && !stored.isDoubtful && !readsAnyOf(unchecked, text);
+  if (stored.makesText && !isSure) doubts.push('texts');
+  if (stored.joinsDistinct) doubts.push('joined');
   return { asked: isKept ? stored.text : text, doubts };
 }
 
-function answerOf({ map, blank, times, areFull }: Stores, written: string): Answer {
+function answerOf({ map, blank, times, unchecked }: Stores, written: string): Answer {
   const start = performance.now(), text = missingPrefixes(written) + written;
   const isUnion = !namesDataset(text, (changed) => isReadable(blank, changed));
   if (!isReadable(blank, text)) blank.query(text);  // throws with the places of the question as it was written
-  const { asked, doubts } = askable(blank, text, areFull);
+  const { asked, doubts } = askable(blank, text, unchecked);
   const result = map.query(asked, { use_default_graph_as_union: isUnion }) as unknown;
   const milliseconds = performance.now() - start, unknown = unknownNames(map, written);
   const timed = (answer: object) => ({ ...answer, milliseconds, unknown, unbound: unboundIn(written), doubts }) as Answer;
