@@ -38,6 +38,12 @@ void requireMethod(const HttpRequest& request, bool may_post) {
   throw Refusal(405, request.method + " is not allowed here; use " + allowed, {{"Allow", allowed}});
 }
 
+/// The name of the commit that an answer is of, from those of the newest before and after it was made.
+std::string stateOfAnswer(const std::string& before, const std::string& after) {
+  if (before == after) return after;
+  return before == kUnknownState || after == kUnknownState ? kUnknownState : kChangedState;
+}
+
 /// A host that can stand in a URL; a client may send anything.
 std::string urlHostOf(const HttpRequest& request) {
   const std::string host = request.header("host");
@@ -153,15 +159,16 @@ HttpResponse MapService::answerRoute(const Route& route, const HttpRequest& requ
   requireMethod(request, may_post || is_trial);
   const WorkSlots::Slot slot = slots_.take(request.has_hung_up);
   if (route.map == nullptr) return answerOwn(route);
-  const bool is_unfinished = options_.warns_of_unfinished && route.map->isUnfinished();
+  const std::string before = route.map->state();
+  bool is_unfinished = false;
   HttpResponse response;
   try {
+    is_unfinished = options_.warns_of_unfinished && route.map->isUnfinished();
     response = answerMap(route, request, target);
   } catch (...) {
     response = responseTo(std::current_exception());
   }
-  // Read after the answer: where it is the state that a client knows, no commit came before the answer.
-  response.headers.emplace_back(kStateHeader, route.map->state());
+  response.headers.emplace_back(kStateHeader, stateOfAnswer(before, route.map->state()));
   if (is_unfinished && response.status < 400)
     response.headers.emplace_back(kWarningHeader,
                                   "the build of this map is unfinished: the answer is that of some of its scans");

@@ -24,8 +24,8 @@ bool ServedMap::isUnfinished() const {
 std::string ServedMap::state() const {
   try {
     return rdf::commitName(rdf::Environment::open(file(), rdf::OpenMode::ReadOnly)->read());
-  } catch (const Error&) {
-    return "unknown";
+  } catch (const std::exception&) {  // also of the file system: what was answered stays answered
+    return kUnknownState;
   }
 }
 

@@ -17,6 +17,9 @@
 
 namespace cluxel::serve {
 
+/// In place of the name of a commit: the file could not be read.
+inline constexpr const char* kUnknownState = "unknown";
+
 /// The objects of one commit.
 struct ObjectTable {
   std::vector<Object> objects;  ///< sorted by IRI
@@ -36,7 +39,8 @@ class ServedMap {
   rdf::QuadReader quads() const { return keeper_.quads(); }
   /// Whether the newest commit is one of a build that is not finished.
   bool isUnfinished() const;
-  /// Names the newest commit, for the header of answers; "unknown" when the file cannot be read now.
+  /// Names the newest commit, for the header of answers; kUnknownState when the file cannot be read now. Never throws
+  /// for a fault of the file.
   std::string state() const;
   /// Calls `use` with the layers of the newest commit. Callers do not wait for each other, but for layers that another
   /// one is reading: each layer of a commit is read once, and kept as long as the commit is the newest.

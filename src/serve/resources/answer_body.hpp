@@ -50,8 +50,10 @@ sparql::QueryOptions queryOptions(const RequestLimits& limits, const HttpRequest
 /// The header of each warning about a query: text in ASCII, other bytes and % percent-encoded.
 inline constexpr const char* kWarningHeader = "Cluxel-Warning";
 
-/// The header that names the newest commit of the map, read when the answer was ready.
+/// The header that names the commit of the map that the answer is of.
 inline constexpr const char* kStateHeader = "Cluxel-State";
+/// Its value where a commit came while the answer was made, also by the request itself.
+inline constexpr const char* kChangedState = "changed";
 
 /// Runs a query with its parameters bound. Warnings about it stand in headers, and below a table.
 HttpResponse answerQuery(const rdf::QuadReader& reader, const std::string& text, const sparql::QueryOptions& options,
