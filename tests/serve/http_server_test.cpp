@@ -5,16 +5,33 @@
 #include <gtest/gtest.h>
 #include <netinet/in.h>
 #include <pthread.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
+#include <atomic>
+#include <cerrno>
 #include <future>
+#include <memory>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "cluxel/error.hpp"
 #include "serve/http_client.hpp"
+
+/// The fault of the next call of accept4(); 0: none.
+static std::atomic<int> next_fault_of_accept{0};
+
+/// In place of that of the system.
+extern "C" int accept4(int listener, sockaddr* address, socklen_t* length, int flags) {
+  if (const int fault = next_fault_of_accept.exchange(0); fault != 0) {
+    errno = fault;
+    return -1;
+  }
+  return static_cast<int>(::syscall(SYS_accept4, listener, address, length, flags));
+}
 
 namespace cluxel::serve {
 namespace {
@@ -81,7 +98,87 @@ TEST(HttpServer, StopsAlsoBeforeItRunsAndWhenAskedByManyWhileClientsCome) {
   }
 }
 
-TEST(HttpServer, TellsThatTheSystemRefusesConnectionsAndEndsThoseThatAreIdle) {
+/// The number that the next file gets.
+int lowestFreeFile() {
+  const int descriptor = ::dup(STDERR_FILENO);
+  ::close(descriptor);
+  return descriptor;
+}
+
+/// Lets the process open `count` more files, as long as it lives.
+class FewMoreFiles {
+ public:
+  explicit FewMoreFiles(int count) {
+    ::getrlimit(RLIMIT_NOFILE, &before_);
+    rlimit few = before_;
+    few.rlim_cur = static_cast<rlim_t>(lowestFreeFile() + count);
+    ::setrlimit(RLIMIT_NOFILE, &few);
+  }
+  ~FewMoreFiles() { ::setrlimit(RLIMIT_NOFILE, &before_); }
+  FewMoreFiles(const FewMoreFiles&) = delete;
+  FewMoreFiles& operator=(const FewMoreFiles&) = delete;
+
+ private:
+  rlimit before_{};
+};
+
+TEST(HttpServer, GoesOnAfterAFaultThatPasses) {
+  HttpServer server({}, hello);
+  std::future<void> run = std::async(std::launch::async, [&] { server.run(); });
+  for (const int fault : {ECONNABORTED, EMFILE, ENFILE, ENOBUFS, ENOMEM, EPERM, EPROTO, EINTR, ENETUNREACH}) {
+    next_fault_of_accept = fault;
+    for (int i = 0; i < 2; ++i) {  // the call that waits takes the first, and the next call fails
+      const Client client(server.port());
+      client.send(kGet);
+      ASSERT_EQ(bodyOf(client.readTo("hello\n")), "hello\n") << fault;
+    }
+    EXPECT_EQ(next_fault_of_accept, 0) << fault;
+  }
+  server.stop();
+  EXPECT_NO_THROW(run.get());
+}
+
+TEST(HttpServer, WaitsWhileTooManyFilesAreOpenAndStopsAlsoThen) {
+  for (const bool stops : {false, true}) {
+    HttpServer server({}, hello);
+    std::future<void> run = std::async(std::launch::async, [&] { server.run(); });
+    auto few = std::make_unique<FewMoreFiles>(1);
+    const Client client(server.port());  // takes the last one
+    client.send(kGet);
+    if (stops) {
+      server.stop();
+      EXPECT_EQ(run.wait_for(std::chrono::seconds(120)), std::future_status::ready);
+    }
+    few.reset();
+    if (!stops) {
+      EXPECT_EQ(bodyOf(client.readTo("hello\n")), "hello\n");
+      server.stop();
+    }
+    EXPECT_NO_THROW(run.get());
+  }
+}
+
+TEST(HttpServer, TellsThatTooManyFilesAreOpenAndLeavesNoneOpen) {
+  const int before = lowestFreeFile();
+  for (int count = 0; count < 2; ++count) {
+    try {
+      const FewMoreFiles few(count);
+      const HttpServer server({}, hello);
+      ADD_FAILURE() << "with " << count << " more files";
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::StoreUnavailable) << error.what();
+    }
+    EXPECT_EQ(lowestFreeFile(), before);
+  }
+  HttpServer first({}, hello);
+  const int with_first = lowestFreeFile();
+  HttpOptions taken;
+  taken.port = first.port();
+  EXPECT_THROW(HttpServer(taken, hello), Error);
+  EXPECT_EQ(lowestFreeFile(), with_first);
+}
+
+TEST(HttpServer, TellsThatTheSystemClosedItsSocketAndEndsConnectionsThatAreIdle) {
   HttpOptions patient;
   patient.idle_time = std::chrono::hours(1);
   HttpServer server(patient, hello);

@@ -2,13 +2,14 @@
 // Runs cpp-httplib's parser on streams of its own, and hands requests to the handler as values.
 #include "serve/http/http_server.hpp"
 
-#include <fcntl.h>
+#include <poll.h>
 #include <sys/eventfd.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
+#include <cerrno>
 #include <memory>
 
 #include "base/ascii.hpp"
@@ -98,12 +99,37 @@ void writeRefusal(HttpStream& stream, const std::string& status, const std::stri
   stream.write(response.data(), response.size());
 }
 
+/// Whether accept() may go on after a fault: the system is short of something, or the connection failed before it was
+/// taken. Others say that the socket does not listen any more.
+bool isPassing(int fault) {
+  return fault != EBADF && fault != EINVAL && fault != ENOTSOCK && fault != EFAULT;
+}
+
+Error tooManyFiles() {
+  return {ErrorKind::StoreUnavailable,
+          "the server cannot listen: too many files are open; allow more, or end other programs"};
+}
+
+/// Closes the file that it holds.
+class OpenFile {
+ public:
+  explicit OpenFile(int descriptor) : descriptor_(descriptor) {
+    if (descriptor < 0) throw tooManyFiles();
+  }
+  ~OpenFile() { ::close(descriptor_); }
+  OpenFile(const OpenFile&) = delete;
+  OpenFile& operator=(const OpenFile&) = delete;
+  int descriptor() const { return descriptor_; }
+
+ private:
+  int descriptor_;
+};
+
 }  // namespace
 
 struct HttpServer::Impl : httplib::Server {
   Impl(const HttpOptions& given, HttpHandler to_handle, AccessLog to_log)
       : options(given), handler(std::move(to_handle)), log(std::move(to_log)), stop_event(::eventfd(0, EFD_CLOEXEC)) {
-    new_task_queue = [this] { return new HttpThreads(options.max_connections, [this] { endConnections(); }); };
     set_payload_max_length(options.max_body_bytes);
     set_keep_alive_max_count(kKeepAliveRequests);
     set_keep_alive_timeout(std::chrono::duration_cast<std::chrono::seconds>(options.idle_time).count());
@@ -122,22 +148,44 @@ struct HttpServer::Impl : httplib::Server {
     });
     bind();
   }
-  ~Impl() override {
-    ::close(listener);
-    ::close(stop_event);
-  }
 
   void bind() {
+    errno = 0;
     port = options.port == 0 ? bind_to_any_port(options.host) : options.port;
     const bool is_bound = options.port == 0 ? port > 0 : bind_to_port(options.host, options.port);
+    if (!is_bound && (errno == EMFILE || errno == ENFILE)) throw tooManyFiles();
     if (!is_bound)
       throw Error(ErrorKind::InvalidArgument, "the server cannot listen on " + options.host + " port " +
                                                   std::to_string(options.port) +
                                                   ": another program uses it, or the address is not of this machine; "
                                                   "choose another port");
-    ::listen(svr_sock_, kBacklog);  // cpp-httplib's queue of five connections is short
-    listener = ::fcntl(svr_sock_, F_DUPFD_CLOEXEC, 0);
-    if (listener < 0) throw Error(ErrorKind::InvalidArgument, "the server cannot listen: too many files are open");
+    listener = std::make_unique<const OpenFile>(svr_sock_);
+    ::listen(listener->descriptor(), kBacklog);  // cpp-httplib's queue of five connections is short
+  }
+
+  /// Returns when the socket listens no more and all connections have ended. Not by cpp-httplib: it ends at faults that
+  /// pass, and does not hear that it shall stop while the process may open no more files.
+  void takeConnections() {
+    HttpThreads threads(options.max_connections);
+    while (!is_stopping) {
+      const int sock = ::accept4(listener->descriptor(), nullptr, nullptr, SOCK_CLOEXEC);
+      if (sock >= 0) {
+        threads.enqueue([this, sock] { process_and_close_socket(sock); });
+      } else if (isPassing(errno)) {
+        waitAfterFault();
+      } else {
+        break;
+      }
+    }
+    endConnections();
+    threads.shutdown();
+  }
+
+  /// For a moment, in which the system may get back what it is short of, or until the server ends.
+  void waitAfterFault() const {
+    constexpr int pause_ms = 10;
+    pollfd entry{stop_event.descriptor(), POLLIN, 0};
+    ::poll(&entry, 1, pause_ms);
   }
 
   static HandlerResponse refuse(httplib::Response& out, int status, const std::string& message) {
@@ -198,7 +246,7 @@ struct HttpServer::Impl : httplib::Server {
   }
 
   bool process_and_close_socket(socket_t sock) override {
-    HttpStream stream(sock, stop_event, options);
+    HttpStream stream(sock, stop_event.descriptor(), options);
     current_stream = &stream;
     if (HttpThreads::isRefused()) {
       writeRefusal(stream, "503 Service Unavailable\r\nRetry-After: 1",
@@ -233,13 +281,13 @@ struct HttpServer::Impl : httplib::Server {
 
   /// Not by cpp-httplib's stop(): it gives up large bodies that are not yet sent, and closes a socket that accept() may
   /// still use. accept() fails on a socket that is shut down, now or when it is called.
-  void stopListening() const { ::shutdown(listener, SHUT_RDWR); }
+  void stopListening() const { ::shutdown(listener->descriptor(), SHUT_RDWR); }
 
   /// Connections end when their request is answered, and idle ones at once.
   void endConnections() {
     is_ending = true;
     const std::uint64_t one = 1;
-    [[maybe_unused]] const ssize_t written = ::write(stop_event, &one, sizeof one);
+    [[maybe_unused]] const ssize_t written = ::write(stop_event.descriptor(), &one, sizeof one);
   }
 
   /// A connection that ends is told once, whoever ends it: the client, cpp-httplib or endAfter(); nothing keeps it
@@ -261,8 +309,8 @@ struct HttpServer::Impl : httplib::Server {
   HttpOptions options;
   HttpHandler handler;
   AccessLog log;
-  int stop_event;
-  int listener = -1;  ///< the socket of cpp-httplib under a number that cpp-httplib does not close
+  OpenFile stop_event;
+  std::unique_ptr<const OpenFile> listener;  ///< the socket that cpp-httplib has made, and leaves open
   int port = 0;
   std::atomic<bool> is_ending = false;    ///< no request is read any more
   std::atomic<bool> is_stopping = false;  ///< by stop()
@@ -277,12 +325,13 @@ int HttpServer::port() const {
 }
 
 void HttpServer::run() {
-  impl_->listen_after_bind();
+  impl_->takeConnections();
   if (impl_->is_stopping) return;
   impl_->stopListening();  // clients need not wait for an answer
-  throw Error(ErrorKind::StoreUnavailable,
-              "the server can take no more connections: the system refused one, perhaps for want of memory or of open "
-              "files; what was running is answered; start it again");
+  throw Error(
+      ErrorKind::StoreUnavailable,
+      "the server can take no more connections: the system has closed its socket; what was running is answered; "
+      "start it again");
 }
 
 void HttpServer::stop() {

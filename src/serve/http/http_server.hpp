@@ -30,13 +30,14 @@ using AccessLog = std::function<void(const AccessEntry&)>;  ///< called from sev
 /// Bound when it is made; answers while run() runs. `handler` must not throw. cpp-httplib parses and writes messages.
 class HttpServer {
  public:
-  /// Throws Error (InvalidArgument) when the address cannot be used.
+  /// Throws Error: InvalidArgument when the address cannot be used, StoreUnavailable when too many files are open.
   HttpServer(const HttpOptions& options, HttpHandler handler, AccessLog log = {});
   ~HttpServer();
 
   int port() const;
-  /// Returns after stop(), when the requests in flight are answered. Throws Error (StoreUnavailable) when the system
-  /// refuses further connections, when those in flight are answered. May be called once.
+  /// Returns after stop(), when the requests in flight are answered. While the system is short of files or memory it
+  /// takes no connections, and goes on after that. Throws Error (StoreUnavailable) when the system has closed the
+  /// socket, when the requests in flight are answered. May be called once.
   void run();
   /// Takes no more connections, and ends idle ones. May be called from any thread, before run(), and again.
   void stop();

@@ -3,6 +3,7 @@
 #include "serve/http/http_threads.hpp"
 
 #include <system_error>
+#include <utility>
 
 namespace cluxel::serve {
 
@@ -55,7 +56,6 @@ void HttpThreads::work() {
 }
 
 void HttpThreads::shutdown() {
-  end_();
   {
     const std::lock_guard lock(mutex_);
     is_ending_ = true;

@@ -2,29 +2,25 @@
 // One thread for each open connection, up to a limit; threads are used again.
 #pragma once
 
-#include <httplib.h>
-
 #include <condition_variable>
 #include <cstddef>
 #include <functional>
 #include <list>
 #include <mutex>
 #include <thread>
-#include <utility>
 #include <vector>
 
 namespace cluxel::serve {
 
-class HttpThreads : public httplib::TaskQueue {
+class HttpThreads {
  public:
-  /// `end` is called when no connection comes any more, before those that are open are waited for.
-  HttpThreads(std::size_t max_threads, std::function<void()> end) : max_threads_(max_threads), end_(std::move(end)) {}
+  explicit HttpThreads(std::size_t max_threads) : max_threads_(max_threads) {}
 
   /// Beyond the limit, and where the system has no more threads, `serve` runs at once in the calling thread, where
   /// isRefused() is then true.
-  void enqueue(std::function<void()> serve) override;
+  void enqueue(std::function<void()> serve);
   /// Waits for all connections.
-  void shutdown() override;
+  void shutdown();
 
   /// True in a connection that must be refused.
   static bool isRefused();
@@ -34,7 +30,6 @@ class HttpThreads : public httplib::TaskQueue {
   void work();
 
   std::size_t max_threads_, busy_ = 0;
-  std::function<void()> end_;
   std::mutex mutex_;
   std::condition_variable changed_;
   bool is_ending_ = false;
