@@ -28,6 +28,8 @@ grep -q wasRun markup.ttl || { printf 'page_test: the label of trees was not fou
 "$cluxel" build scans -o '<b>markup.clx' --ontology "$source_dir/ontology/core.ttl" markup.ttl 2>/dev/null
 tree=$("$cluxel" query '<b>markup.clx' trees.rq --format csv | sed -n 2p | cut -d, -f1)
 "$cluxel" update '<b>markup.clx' -e "INSERT DATA { <$tree> <http://www.w3.org/2000/01/rdf-schema#label> \"\"\"<img src=x onerror=\"window.wasRun=1\">\"\"\" }" >/dev/null
+# Numbers in forms that a map does not have otherwise, and one in its own.
+"$cluxel" update '<b>markup.clx' -e 'INSERT DATA { <urn:thing> <https://example.org/size> 1.50, 5.0E-1 ; <https://example.org/length> 2.0 }' >/dev/null
 "$cluxel" view '<b>markup.clx' -o markup.html
 
 # Two visits, between which things change.
@@ -68,7 +70,7 @@ trap 'kill "$service"' EXIT
 sample_service=$!
 # One that changes under its page.
 cp campus.clx shrinking.clx
-"$cluxel" serve shrinking.clx --port 0 --quiet >changed.url &
+"$cluxel" serve shrinking.clx --port 0 --token-file token --quiet >changed.url &
 changed_service=$!
 trap 'kill "$service" "$sample_service" "$changed_service"' EXIT
 until [ -s url ] || ! kill -0 "$service"; do sleep 0.1; done

@@ -31,6 +31,11 @@ export class Service {
     return new Uint8Array(await (await this.answer(path, {})).arrayBuffer());
   }
 
+  /** Whether the map as it is now has the object. */
+  async has(iri: string): Promise<boolean> {
+    return (await this.json<{ boolean: boolean }>(`sparql?format=json&query=${encodeURIComponent(`ASK { <${iri}> a ?class }`)}`)).boolean;
+  }
+
   /** What to say beside an answer: empty while the map is the page's. */
   get note(): string {
     return this.hasChanged ? 'This is of the map as it is now, which has changed since this page was made.' : '';
@@ -43,9 +48,12 @@ export class Service {
     return response;
   }
 
-  /** An answer without a state, as of a server before the service, tells nothing of the map. */
+  /**
+   * An answer without a state, as of a server before the service, tells nothing of the map, and so does one for which the
+   * file could not be read.
+   */
   private compare(state: string | null): void {
-    if (state === null || state === this.state || this.hasChanged) return;
+    if (state === null || state === 'unknown' || state === this.state || this.hasChanged) return;
     this.hasChanged = true;
     this.onChange();
   }

@@ -17,10 +17,7 @@ export function statementForm(object: MapObject, model: MapModel, service: Servi
     });
   } }, 'Copy');
   const saveIt = service && el('button', { type: 'button', class: 'plain', onclick: () => {
-    const gone = service.hasChanged ? ' If the object has gone meanwhile, the statement is about what it went on as.' : '';
-    service.post('sparql', 'application/sparql-update', code.textContent ?? '').then(
-      () => { said.textContent = `Saved as an operator statement.${gone} This page shows the map as it was before: load it anew to see the statement.`; },
-      (fault: Error) => { said.textContent = fault.message; });
+    saved(service, object, code.textContent ?? '').then((told) => { said.textContent = told; }, (fault: Error) => { said.textContent = fault.message; });
   } }, 'Save in the map');
   const show = () => {
     const isEmpty = kind.value === '' && text.value.trim() === '';
@@ -37,6 +34,14 @@ export function statementForm(object: MapObject, model: MapModel, service: Servi
                'With a class the object is one of that class from then on: its rule is "operator", its confidence 1, and it gets another IRI.'),
             code, el('div', { class: 'row' }, copy, saveIt), said,
             service && el('p', { class: 'note' }, 'To save, the service needs its token: it stands in the panel Rules.'));
+}
+
+/** Saves a statement, and tells whom it is about. The map is asked before: the change that ended an object may be unknown yet. */
+async function saved(service: Service, object: MapObject, statement: string): Promise<string> {
+  const isThere = await service.has(object.iri);
+  await service.post('sparql', 'application/sparql-update', statement);
+  const about = isThere ? '' : ' The object has gone since this page was made: the statement is about what it went on as.';
+  return `Saved as an operator statement.${about} This page shows the map as it was before: load it anew to see the statement.`;
 }
 
 /** The classes that an object may be stated to be of, as the service takes them: those below clx:Object. */
