@@ -86,12 +86,14 @@ MapChanges repose(Map& map, const std::map<std::string, Matrix>& poses, unsigned
 using OptionalMatrix = std::optional<Matrix>;
 
 MergeOptions mergeOptionsOf(const OptionalMatrix& T_first_second, const std::optional<std::filesystem::path>& use,
-                            bool force, bool dry_run, unsigned threads, std::optional<std::uint64_t> batch_points) {
+                            bool force, bool drop_statements, bool dry_run, unsigned threads,
+                            std::optional<std::uint64_t> batch_points) {
   MergeOptions options;
   options.threads = threads;
   options.batch_points = batch_points;
   options.use = use.value_or(std::filesystem::path());
   options.force = force;
+  options.drop_statements = drop_statements;
   options.dry_run = dry_run;
   if (T_first_second) options.T_first_second = rowByRow(*T_first_second, "T_first_second");
   return options;
@@ -99,17 +101,20 @@ MergeOptions mergeOptionsOf(const OptionalMatrix& T_first_second, const std::opt
 
 Map merge(const std::vector<std::filesystem::path>& maps, const std::filesystem::path& target,
           const OptionalMatrix& T_first_second, const std::optional<std::filesystem::path>& use, bool force,
-          unsigned threads, std::optional<std::uint64_t> batch_points, py::object progress, py::object note) {
-  const MergeOptions options = mergeOptionsOf(T_first_second, use, force, false, threads, batch_points);
+          bool drop_statements, unsigned threads, std::optional<std::uint64_t> batch_points, py::object progress,
+          py::object note) {
+  const MergeOptions options =
+      mergeOptionsOf(T_first_second, use, force, drop_statements, false, threads, batch_points);
   return changed(std::move(progress), std::move(note),
                  [&](ProgressSink& sink) { return Map::merge(maps, target, options, sink); });
 }
 
 MapChanges mergeInto(const std::vector<std::filesystem::path>& maps, const std::filesystem::path& target,
                      const OptionalMatrix& T_first_second, const std::optional<std::filesystem::path>& use, bool force,
-                     bool dry_run, unsigned threads, std::optional<std::uint64_t> batch_points, py::object progress,
-                     py::object note) {
-  const MergeOptions options = mergeOptionsOf(T_first_second, use, force, dry_run, threads, batch_points);
+                     bool drop_statements, bool dry_run, unsigned threads, std::optional<std::uint64_t> batch_points,
+                     py::object progress, py::object note) {
+  const MergeOptions options =
+      mergeOptionsOf(T_first_second, use, force, drop_statements, dry_run, threads, batch_points);
   return changed(std::move(progress), std::move(note),
                  [&](ProgressSink& sink) { return Map::mergeInto(maps, target, options, sink); });
 }
@@ -154,19 +159,22 @@ void bindChanges(py::module_& module, py::class_<Map>& map) {
           py::arg("note") = py::none(),
           "Gives scans other poses, batch by batch. poses: dict from cloud, named as in retract(), to the pose of the\n"
           "sensor in the map, an array of shape (4, 4) [m]. Gives MapChanges.");
-  module.def("merge", &merge, py::arg("maps"), py::arg("target"), py::kw_only(), py::arg("T_first_second") = py::none(),
-             py::arg("use") = py::none(), py::arg("force") = false, py::arg("threads") = 0U,
-             py::arg("batch_points") = py::none(), py::arg("progress") = py::none(), py::arg("note") = py::none(),
-             "Merges maps, all in the frame of the first, into the new file `target`, and opens it.\n\n"
-             "T_first_second: for two maps, takes points of the second to the frame of the first: an array of shape\n"
-             "(4, 4), a rigid motion [m]. Given, also as the identity, it allows other frames.\n"
-             "use: the map of them whose ontology, rules and model are used; None: they must agree.\n"
-             "force: replaces another file that is there.");
+  module.def(
+      "merge", &merge, py::arg("maps"), py::arg("target"), py::kw_only(), py::arg("T_first_second") = py::none(),
+      py::arg("use") = py::none(), py::arg("force") = false, py::arg("drop_statements") = false,
+      py::arg("threads") = 0U, py::arg("batch_points") = py::none(), py::arg("progress") = py::none(),
+      py::arg("note") = py::none(),
+      "Merges maps, all in the frame of the first, into the new file `target`, and opens it.\n\n"
+      "T_first_second: for two maps, takes points of the second to the frame of the first: an array of shape\n"
+      "(4, 4), a rigid motion [m]. Given, also as the identity, it allows other frames.\n"
+      "use: the map of them whose ontology, rules and model are used; None: they must agree.\n"
+      "force: replaces another map, or an empty file, that is there. drop_statements: with force, also one that\n"
+      "has operator statements which the maps lack; they are lost.");
   module.def(
       "merge_into", &mergeInto, py::arg("maps"), py::arg("target"), py::kw_only(),
       py::arg("T_first_second") = py::none(), py::arg("use") = py::none(), py::arg("force") = false,
-      py::arg("dry_run") = false, py::arg("threads") = 0U, py::arg("batch_points") = py::none(),
-      py::arg("progress") = py::none(), py::arg("note") = py::none(),
+      py::arg("drop_statements") = false, py::arg("dry_run") = false, py::arg("threads") = 0U,
+      py::arg("batch_points") = py::none(), py::arg("progress") = py::none(), py::arg("note") = py::none(),
       "The same as merge(); tells what became of the objects of the maps, as MapChanges. dry_run: tells what it\n"
       "would make, and writes no target.");
 }

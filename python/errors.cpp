@@ -50,6 +50,8 @@ const char* remedyText(Remedy remedy) {
       return "pass home=FOLDER, or set CLUXEL_HOME, to name the folder that holds ontology, rules and models";
     case Remedy::NamePoses:
       return "pass poses=FILE to name the poses";
+    case Remedy::DropStatements:
+      return "pass drop_statements=True to drop them";
     case Remedy::NameTime:
       return "pass since=TIME to tell from when on scans count as later";
     case Remedy::NameValue:

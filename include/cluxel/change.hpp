@@ -28,8 +28,11 @@ struct MergeOptions {
   /// motion within 1e-6. Given, also as the identity, it allows another map origin and coordinate system.
   std::optional<std::array<double, 16>> T_first_second = {};
   std::filesystem::path use = {};  ///< the map of them whose ontology, rules and model are used; empty: all agree
-  bool force = false;              ///< replace another file that is there
-  bool dry_run = false;            ///< of mergeInto(): compute what it would make, and write nothing there
+  bool force = false;              ///< replace another map, or an empty file, that is there
+  /// With `force`: replace that map also when it has operator statements, or withdrawals of them, which the maps to be
+  /// merged do not have. They are lost.
+  bool drop_statements = false;
+  bool dry_run = false;  ///< of mergeInto(): compute what it would make, and leave the target as it is
 };
 
 /// Another pose of a scan that is in the map.

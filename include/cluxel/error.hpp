@@ -61,20 +61,21 @@ enum class ErrorKind : std::uint8_t {
 /// What the caller can do about an error, where one setting of the call helps. A program names its option for it.
 enum class Remedy : std::uint8_t {
   None,
-  ReplaceMap,     ///< build with BuildOptions::force
-  NameHome,       ///< name the folder that holds ontology, rules, queries, models and labels
-  NamePoses,      ///< name the file of poses
-  NameTruth,      ///< name a folder of truth files
-  ListClouds,     ///< list the clouds of the map
-  NameService,    ///< name the store that answers SERVICE
-  NameLoadFile,   ///< name the file that LOAD reads
-  NameValue,      ///< give a parameter of a question as NAME=VALUE
-  LocalFrame,     ///< export in metres of the map frame
-  NameTransform,  ///< name the transform from the second map to the first
-  ChooseInputs,   ///< choose the map whose ontology, rules and model a merge uses
-  MoveScans,      ///< give scans of the map other poses
-  MergeMaps,      ///< merge maps instead of adding scans
-  NameTime,       ///< tell from when on scans count as later
+  ReplaceMap,      ///< replace it: BuildOptions::force, MergeOptions::force
+  NameHome,        ///< name the folder that holds ontology, rules, queries, models and labels
+  NamePoses,       ///< name the file of poses
+  NameTruth,       ///< name a folder of truth files
+  ListClouds,      ///< list the clouds of the map
+  NameService,     ///< name the store that answers SERVICE
+  NameLoadFile,    ///< name the file that LOAD reads
+  NameValue,       ///< give a parameter of a question as NAME=VALUE
+  LocalFrame,      ///< export in metres of the map frame
+  NameTransform,   ///< name the transform from the second map to the first
+  ChooseInputs,    ///< choose the map whose ontology, rules and model a merge uses
+  MoveScans,       ///< give scans of the map other poses
+  MergeMaps,       ///< merge maps instead of adding scans
+  DropStatements,  ///< let operator statements go: MergeOptions::drop_statements
+  NameTime,        ///< tell from when on scans count as later
 };
 
 /// Base of all errors of the library. what() says what is wrong, where, and what to do.

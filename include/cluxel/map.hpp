@@ -148,14 +148,18 @@ class CLUXEL_API Map {
   /// map of the poses that the scans have then. No files are read: a path names what was read from it.
   MapChanges repose(const std::vector<CloudPose>& poses, const ChangeOptions& options, ProgressSink& sink);
   /// Merges maps, all in the frame of the first, into the new file `target`, and opens it: the map that build() makes
-  /// from all scans. A `target` that is the merge of these maps already is left as it is. InvalidArgument when another
-  /// file is there and `options.force` is not set, when inputs, map origins or coordinate systems differ and the
-  /// options do not say what to do, when `options.use` is none of the maps, and for `options.dry_run`. InputError when
-  /// a scan has two poses.
+  /// from all scans. Without `options.force`, a `target` that is the merge of these maps already is left as it is.
+  /// InvalidArgument when another map is there and `options.force` is not set; when it has operator statements that the
+  /// maps lack and `options.drop_statements` is not set, also when they came while the merge ran; when inputs, map
+  /// origins or coordinate systems differ and the options do not say what to do, when `options.use` is none of the
+  /// maps, and for `options.dry_run`. StoreUnavailable when `target` is neither a map nor empty. InputError when a scan
+  /// has two poses. The work is done in the file `target`.merging, which takes the name at the end; one that a killed
+  /// merge left is removed.
   static Map merge(const std::vector<std::filesystem::path>& maps, const std::filesystem::path& target,
                    const MergeOptions& options, ProgressSink& sink);
-  /// The same; tells what became of the objects of the maps instead of opening the result. A dry run works on a copy
-  /// beside `target`, which it removes.
+  /// The same; tells what became of the objects of the maps instead of opening the result. A dry run works in
+  /// `target`.merging, too, or in the folder for temporary files when nothing may be written beside `target`, and
+  /// removes it.
   static MapChanges mergeInto(const std::vector<std::filesystem::path>& maps, const std::filesystem::path& target,
                               const MergeOptions& options, ProgressSink& sink);
 

@@ -56,7 +56,10 @@ MergeRequest mergeRequestOf(const std::vector<std::filesystem::path>& maps, cons
   MergeRequest request;
   request.params.change =
       changeParams({.threads = options.threads, .batch_points = options.batch_points, .dry_run = options.dry_run});
+  if (options.drop_statements && !options.force)
+    throw Error(ErrorKind::InvalidArgument, "drop_statements goes with force only");
   request.params.force = options.force;
+  request.params.drop_statements = options.drop_statements;
   for (const std::filesystem::path& map : maps) request.maps.push_back({map, Eigen::Isometry3d::Identity()});
   if (options.T_first_second) {
     Eigen::Isometry3d T_first_second = motionOf(*options.T_first_second);

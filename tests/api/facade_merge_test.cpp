@@ -93,18 +93,38 @@ TEST_F(FacadeMerge, ForceReplacesAnotherFileAndADryRunNone) {
   const Map a = built(first, "a.clx"), b = built(rest, "b.clx");
   const fs::path target = folder.path() / "target.clx";
   fs::copy_file(a.file(), target);
-  const std::string before = readFile(target);
+  const MergeOptions kept{.force = true, .drop_statements = true, .dry_run = true};
   try {
     Map::merge({a.file(), b.file()}, target, {}, silence);
     FAIL() << "another map is there";
   } catch (const Error& error) {
     EXPECT_EQ(error.remedy(), Remedy::ReplaceMap);
   }
-  const MapChanges planned = Map::mergeInto({a.file(), b.file()}, target, {.force = true, .dry_run = true}, silence);
-  EXPECT_TRUE(readFile(target) == before) << "a dry run wrote";
-  EXPECT_THROW(Map::merge({a.file(), b.file()}, target, {.force = true, .dry_run = true}, silence), Error);
-  EXPECT_TRUE(readFile(target) == before);
-  const MapChanges done = Map::mergeInto({a.file(), b.file()}, target, {.force = true}, silence);
+  Map::open(target).update("INSERT DATA { <https://e.org/a> <https://e.org/b> 1 }");
+  const std::string stated = readFile(target);
+  try {
+    Map::merge({a.file(), b.file()}, target, {.force = true}, silence);
+    FAIL() << "the operator's statements would be lost";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.remedy(), Remedy::DropStatements);
+  }
+  EXPECT_TRUE(readFile(target) == stated);
+  writeFile(target, "what somebody wrote\n");
+  try {
+    Map::merge({a.file(), b.file()}, target, {.force = true, .drop_statements = true}, silence);
+    FAIL() << "a text is there";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::StoreUnavailable);
+  }
+  writeFile(target, stated);
+  EXPECT_THAT(refusalOf({a.file(), b.file()}, {.drop_statements = true}, Remedy::None),
+              ::testing::HasSubstr("goes with force"));
+  const MapChanges planned = Map::mergeInto({a.file(), b.file()}, target, kept, silence);
+  EXPECT_TRUE(readFile(target) == stated) << "a dry run wrote";
+  EXPECT_THROW(Map::merge({a.file(), b.file()}, target, kept, silence), Error);
+  EXPECT_TRUE(readFile(target) == stated);
+  const MapChanges done =
+      Map::mergeInto({a.file(), b.file()}, target, {.force = true, .drop_statements = true}, silence);
   EXPECT_TRUE(mapping::canonicalText(target) == mapping::canonicalText(FacadeCampus::shared().map.file()));
   EXPECT_EQ(planned.scans_added, done.scans_added);
   EXPECT_EQ(planned.objects.size(), done.objects.size());

@@ -199,7 +199,9 @@ TEST_F(ChangeCommands, MergeMakesTheMapOfAllScansAndMayBeRepeated) {
   ASSERT_EQ(run("update " + in("merged.clx") + " -e 'INSERT DATA { <https://e.org/a> <https://e.org/b> 1 }'").code, 0);
   expectError(run(merge), 2, "exists already");
   expectError(run("merge " + maps + " -o " + in("whole.clx")), 2, "exists already");  // of another history
-  EXPECT_EQ(run(merge + " --force").code, 0);
+  expectError(run(merge + " --force"), 2, "has operator statements");
+  expectError(run(merge + " --drop-statements"), 2, "--force");
+  EXPECT_EQ(run(merge + " --force --drop-statements").code, 0);
   EXPECT_TRUE(canonical("merged.clx") == canonical("whole.clx"));
 }
 

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <utility>
 
 #include "cluxel/error.hpp"
 #include "mapping/build/operator_statements.hpp"
@@ -22,6 +23,8 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
 using testing::UnorderedElementsAre;
 
 class StatementHistory : public testing::Test {
@@ -107,6 +110,65 @@ TEST_F(StatementHistory, WhatWasStatedAgainAfterItsWithdrawalStays) {
   state(older, {sign});
   EXPECT_THAT(statementsOf(merged(withdrawn, older, notes)), UnorderedElementsAre(sign.id()));
   EXPECT_EQ(notes.all.find("left out"), std::string::npos);
+}
+
+/// Nothing can compute again what an operator stated in the map that a merge replaces.
+TEST_F(StatementHistory, AMergeDropsWhatOnlyTheReplacedMapKnowsWhenToldTo) {
+  const Statement sign = about(0, StatementKind::Is, "StreetSign"), lamp = about(1, StatementKind::Is, "StreetLamp");
+  state(map(), {sign});
+  const fs::path older = copied("older"), target = copied("target");
+  const auto merge = [&](bool drop_statements) {
+    StatementNotes notes;
+    mergeMaps({{map()}, {older}}, target,
+              {.change = {}, .use = std::nullopt, .force = true, .drop_statements = drop_statements}, notes);
+    return notes.all;
+  };
+  const auto expectRefused = [&](const std::string& why) {
+    const std::string before = canonicalText(target);
+    try {
+      merge(false);
+      ADD_FAILURE() << why;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::InvalidArgument);
+      EXPECT_EQ(error.remedy(), Remedy::DropStatements) << error.what();
+    }
+    EXPECT_TRUE(canonicalText(target) == before) << why;
+    EXPECT_THAT(merge(true), HasSubstr("are dropped"));
+    EXPECT_TRUE(canonicalText(target) == canonicalText(map())) << why;
+  };
+  EXPECT_THAT(merge(false), Not(HasSubstr("are dropped"))) << "all that it states is in the maps";
+  state(target, {lamp});
+  expectRefused("its own statement");
+  state(target, {}, {sign.id()});
+  expectRefused("its own withdrawal");
+  updateMap(target, "INSERT DATA { <https://e.org/a> <https://e.org/b> [ <https://e.org/c> 1 ] }", {}, silence());
+  expectRefused("its own facts");
+  state(map(), {}, {sign.id()});
+  merge(false);
+  EXPECT_THAT(statementsOf(target), IsEmpty()) << "one of the maps has withdrawn it";
+}
+
+TEST_F(StatementHistory, AStatementThatComesWhileAMergeRunsIsNotDropped) {
+  const fs::path older = copied("older"), target = copied("target");
+  class StatingSink : public ProgressSink {
+   public:
+    explicit StatingSink(std::function<void()> act) : act_(std::move(act)) {}
+    void note(std::string_view) override { actOnce(); }
+    void progress(std::string_view, std::size_t, std::size_t) override { actOnce(); }
+    bool has_acted = false;
+
+   private:
+    void actOnce() {
+      if (!std::exchange(has_acted, true)) act_();
+    }
+    std::function<void()> act_;
+  };
+  const std::string fact = "<https://e.org/a> <https://e.org/b> 1";
+  StatingSink sink([&] { updateMap(target, "INSERT DATA { " + fact + " }", {}, silence()); });
+  EXPECT_THROW(mergeMaps({{map()}, {older}}, target, {.change = {}, .use = std::nullopt, .force = true}, sink), Error);
+  EXPECT_TRUE(sink.has_acted);
+  EXPECT_THAT(canonicalText(target), HasSubstr("<https://e.org/b>"));
+  EXPECT_FALSE(fs::exists(target.string() + ".merging"));
 }
 
 TEST_F(StatementHistory, OfMapsWhoseRulesDecideAlikeIsMergedInAnyOrder) {

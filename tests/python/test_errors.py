@@ -101,10 +101,16 @@ def test_a_merge_replaces_a_map_by_force_only(campus, copied_map, tmp_path):
     with pytest.raises(cluxel.InvalidArgumentError, match="exists already") as raised:
         cluxel.merge([campus.file, twin], copied_map.file)
     assert "force=True" in raised.value.remedy
+    copied_map.update("INSERT DATA { <http://e/a> <http://e/b> 1 }")
+    with pytest.raises(cluxel.InvalidArgumentError, match="has operator statements") as raised:
+        cluxel.merge([campus.file, twin], copied_map.file, force=True)
+    assert "drop_statements=True" in raised.value.remedy and copied_map.query("ASK { <http://e/a> ?p 1 }")
+    drop = dict(force=True, drop_statements=True)
     scans = len(copied_map.clouds())
-    assert cluxel.merge_into([campus.file, twin], copied_map.file, force=True, dry_run=True).scans_already_there > 0
+    assert cluxel.merge_into([campus.file, twin], copied_map.file, dry_run=True, **drop).scans_already_there > 0
     assert len(copied_map.clouds()) == scans
-    assert len(cluxel.merge([campus.file, twin], copied_map.file, force=True).clouds()) == scans + 1
+    assert len(cluxel.merge([campus.file, twin], copied_map.file, **drop).clouds()) == scans + 1
+    assert not copied_map.query("ASK { <http://e/a> ?p 1 }")
 
 
 def test_what_is_not_known_is_none(tmp_path):

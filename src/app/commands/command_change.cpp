@@ -134,7 +134,11 @@ void addChange(CLI::App& app, Session& session) {
   command->add_option("--transform", merging->transform,
                       "a file with the 4x4 or 3x4 matrix from the second map to the first");
   command->add_option("--use", merging->use, "the map whose ontology, rules and model are used, when they differ");
-  command->add_flag("--force", merging->params.force, "replace a file that is there");
+  CLI::Option* force = command->add_flag("--force", merging->params.force, "replace another map that is there");
+  command
+      ->add_flag("--drop-statements", merging->params.drop_statements,
+                 "with --force: also when that map has operator statements of its own, which are lost")
+      ->needs(force);
   addChangeOptions(*command, merging->params.change, true);
   addListed(*command, merging->listed);
   onRun(*command, session, [merging, &session] { return merge(*merging, session); });

@@ -36,6 +36,8 @@ const char* hintFor(Remedy remedy) {
       return "'cluxel repose MAP SCANS' gives clouds of a map other poses";
     case Remedy::MergeMaps:
       return "'cluxel merge MAP MAP -o MAP' makes one map of several";
+    case Remedy::DropStatements:
+      return "--drop-statements drops them";
     case Remedy::NameTime:
       return "--since TIME tells from when on scans count as later; `ask` takes since=TIME";
   }

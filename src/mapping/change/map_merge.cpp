@@ -81,13 +81,14 @@ class Merge {
     for (const MapToMerge& map : maps_) readers_.emplace_back(map.file);
     requireEqualInputs();
     base_ = largest();
-    requireMapOrNothing();
+    requireMapOrNothing(target_);
     if (fs::exists(target_) && !params_.force) return reportOfMerged();
+    if (!params_.drop_statements) requireStatementsKept(target_, quadsOfMaps());
     requireScansToFit();
     removeBeside();
     if (temporary_) sink_.note(noteOfCopy(target_));
     ChangeReport report = mergeBeside();
-    if (!params_.change.dry_run) replaceByMerged(beside_, target_, sink_);
+    if (!params_.change.dry_run) replaceByMerged(beside_, target_, params_.drop_statements, sink_);
     return report;
   }
 
@@ -103,13 +104,6 @@ class Merge {
         if (fs::equivalent(maps_[i].file, maps_[j].file, error))
           throw Error(ErrorKind::InvalidArgument, maps_[i].file.string() + ": is named twice");
     }
-  }
-
-  /// Another file is not replaced.
-  void requireMapOrNothing() const {
-    if (fs::is_directory(target_))
-      throw Error(ErrorKind::StoreUnavailable, target_.string() + ": is a folder, a map was expected");
-    if (fs::exists(target_) && !fs::is_empty(target_)) rdf::Environment::open(target_, rdf::OpenMode::ReadOnly);
   }
 
   void requireEqualInputs() const {

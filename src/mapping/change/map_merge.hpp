@@ -22,7 +22,8 @@ struct MapToMerge {
 struct MergeParams {
   ChangeParams change;
   std::optional<std::size_t> use;  ///< the map whose ontology, rules and model are used; absent: they must be equal
-  bool force = false;              ///< replace a file that is there
+  bool force = false;              ///< replace another map, or an empty file, that is there
+  bool drop_statements = false;    ///< with `force`: also when that map has operator statements of its own
   /// A map that meets the others in more tiles does not lend what it decided: what lies along a border is decided at
   /// once.
   std::size_t max_border_tiles = 100;
@@ -32,9 +33,10 @@ struct MergeParams {
 /// statements of all maps are kept, but those that one of them has withdrawn since. The result appears under its name
 /// when it is complete; a killed merge leaves TARGET.merging, which the next one removes. Without `force` a target that
 /// is the merge of these maps already, their history included, is left as it is, with a note. Throws Error
-/// (InvalidArgument) for any other file there, when inputs, map origin or coordinate system differ, or a file is named
-/// twice; InputError when a scan has two poses. With `dry_run` the work is done on a copy beside TARGET, or in the
-/// folder for temporary files when nothing may be written there; it is removed.
+/// (InvalidArgument) for another map there; with `force`, for one that has operator statements which the maps lack,
+/// unless `drop_statements` is set; when inputs, map origin or coordinate system differ, or a file is named twice;
+/// StoreUnavailable for a target that is no map; InputError when a scan has two poses. With `dry_run` the work is done
+/// on a copy beside TARGET, or in the folder for temporary files when nothing may be written there; it is removed.
 ChangeReport mergeMaps(const std::vector<MapToMerge>& maps, const std::filesystem::path& target,
                        const MergeParams& params, ProgressSink& sink);
 
