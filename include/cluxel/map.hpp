@@ -90,7 +90,8 @@ struct MapSummary {
 ///
 /// Thread-safe: any number of threads may call its functions at once. Each call reads one consistent state, the newest
 /// commit at its begin, also when another thread or process writes. The const functions never wait for one that writes.
-/// summary(), clouds(), points() and explain() wait for each other, all others run in parallel. points() and explain()
+/// summary(), clouds(), points() and explain() wait for each other. All others run in parallel, but tasks and these
+/// four wait for layers of the commit that another call is reading: each layer is read once. points() and explain()
 /// keep what they read until the map changes: about 1 KB a cluxel. Functions that write wait for each other.
 ///
 /// Callbacks (ProgressSink and `poll`) may call all const functions, also of the map that is being written: they see
@@ -188,9 +189,10 @@ class CLUXEL_API Map {
   /// class. Cost: the points of the map.
   CostMap costMap(const GroundOptions& options = {}) const;
   /// Plans a walk on which a further object of the class is likely seen soon, and tells which the map holds. NotFound
-  /// for an unknown class or place, and for a start without open ground within 2 m; InvalidArgument as for objects(),
-  /// and for a file of places that says nothing about the class. Cost: the points of the map, then for each stop the
-  /// cells in view of all possible stops.
+  /// for an unknown class or place, for a start without open ground within 2 m, and for an absent start when no scan
+  /// has a pose, or when there are several scans with poses and none has a time; InvalidArgument as for objects(), and
+  /// for a file of places that says nothing about the class. Cost: the points of the map, then for each stop the cells
+  /// in view of all possible stops.
   SearchTour search(std::string_view class_name, const SearchOptions& options = {}) const;
 
   /// What vanished, appeared and moved between the visits to the place, and the states of all objects but ground.

@@ -22,7 +22,8 @@ struct Map::Impl {
       return read(mine.map.reader());
     });
   }
-  /// The same with a reader of its own, for what takes long: nobody waits.
+  /// The same with a reader of its own, for what takes long. Readers do not wait for each other, but for layers of the
+  /// commit that another one is reading: each layer is read once.
   template <typename Read>
   auto readingAlone(const Read& read) const {
     return guarded([&] {
