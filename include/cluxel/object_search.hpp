@@ -19,7 +19,7 @@ struct SearchOptions {
   std::optional<Place> start = {};      ///< absent: where the last scan was taken
   std::filesystem::path places = {};    ///< Turtle with usual places of classes; empty: those of the ontology
   bool crosses_unobserved = false;      ///< the walk may cross ground that was not observed
-  std::optional<double> budget_m = {};  ///< largest length of the walk, above 0; absent: no limit
+  std::optional<double> budget_m = {};  ///< largest length of the walk, above 0, to 1e6; absent: no limit
   std::size_t max_stops = 10;           ///< 1 to 100
   double view_m = 10;                   ///< distance within which an object is recognised, 1 to 100
   double detection = 0.8;               ///< share of the objects of the class in view of a scan that the map holds

@@ -200,7 +200,9 @@ void addSearch(CLI::App& app, Session& session) {
   command->add_flag("--unobserved", options->request.params.crosses_unobserved,
                     "the walk may cross ground that was not observed");
   command->add_option("--from", request->from, "start: X,Y or an object; default: where the last scan was taken");
-  command->add_option("--budget", request->tour.budget_m, "largest length of the walk [m]")->check(above0());
+  command->add_option("--budget", request->tour.budget_m, "largest length of the walk [m]")
+      ->check(above0())
+      ->check(within(numbersIn(tasks::kBudget_m)));
   command->add_option("--stops", request->tour.max_stops, "largest number of stops [10]")
       ->check(wholeWithin(wholeNumbersIn(tasks::kTourStops)));
   command->add_option("--view", request->search.view_m, "distance within which an object is recognised [m, 10]")
@@ -241,8 +243,10 @@ void addWays(CLI::App& app, Session& session) {
   addWalkOptions(*reach_command, *reach_options);
   addWayOptions(*reach_command, *reach_options);
   reach_command->add_option("--minutes", reach_options->minutes, "largest duration of the walk [min, 5]")
-      ->check(above0());
-  reach_command->add_option("--speed", reach_options->speed_m_s, "walking speed [m/s, 1.2]")->check(above0());
+      ->check(above0())
+      ->check(within(numbersIn(tasks::kMinutes)));
+  reach_command->add_option("--speed", reach_options->speed_m_s, "walking speed [m/s, 1.2]")
+      ->check(within(numbersIn(tasks::kSpeed_m_s)));
   onRun(*reach_command, session, [reach_options, &session] { return reach(*reach_options, session); });
 
   auto map_options = std::make_shared<WayArguments>();

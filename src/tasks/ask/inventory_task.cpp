@@ -18,6 +18,7 @@
 #include "tasks/changes/site_changes.hpp"
 #include "tasks/gone_things.hpp"
 #include "tasks/search/next_view.hpp"
+#include "tasks/ways/way_limits.hpp"
 #include "tasks/ways/way_report.hpp"
 
 namespace cluxel::tasks {
@@ -53,6 +54,12 @@ std::vector<QueryColumn> inventoryColumns(bool with_streets) {
 TaskShape shapeOfItem(const InventoryItem& item) {
   if (item.line.size() > 1) return {TaskShape::Kind::Line, item.line};
   return {TaskShape::Kind::Point, {item.at}};
+}
+
+TaskParameter numberWithin(const Limits& limits, TaskParameter parameter) {
+  parameter.min = limits.min;
+  parameter.max = limits.max;
+  return parameter;
 }
 
 TaskAnswer runNextView(const TaskContext& context, const TaskValues& values) {
@@ -319,11 +326,11 @@ std::vector<Task> surveyTasks() {
       {"from", "m", "", "X,Y or an object; without it where the last scan was taken", Kind::Place},
       {"doubtful", "", "false", "true: look at doubtful objects", Kind::Flag},
       {"below", "1", "0.7", "an object of less confidence is doubtful", Kind::Number, false, false, 0, 1},
-      {"view", "m", "15", "distance within which a view is good enough", Kind::Number, false, false, 1, 100},
-      {"stops", "1", "5", "largest number of stops", Kind::WholeNumber, false, false, 1, 100},
-      {"budget", "m", "0", "largest length of the walk; 0: no limit", Kind::Number, false, false, 0, 1e6},
-      {"width", "m", "0.6", "free width that is needed", Kind::Number, false, false, 0, 20},
-      {"maxStep", "m", "0.15", "height of a kerb that can be crossed", Kind::Number, false, false, 0, 2}};
+      numberWithin(kView_m, {"view", "m", "15", "distance within which a view is good enough", Kind::Number}),
+      numberWithin(kTourStops, {"stops", "1", "5", "largest number of stops", Kind::WholeNumber}),
+      numberWithin(kBudget_m, {"budget", "m", "0", "largest length of the walk; 0: no limit", Kind::Number}),
+      numberWithin(kWidth_m, {"width", "m", "0.6", "free width that is needed", Kind::Number}),
+      numberWithin(kMaxStep_m, {"maxStep", "m", "0.15", "height of a kerb that can be crossed", Kind::Number})};
   view.columns = {{"stop", "1", "number of the stop on the walk"},
                   {"x", "m", "position in the map frame"},
                   {"y", "m", "position in the map frame"},

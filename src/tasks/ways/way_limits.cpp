@@ -3,7 +3,6 @@
 #include "tasks/ways/way_limits.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 
 #include "cluxel/error.hpp"
@@ -16,6 +15,14 @@ std::string shortText(double value) {
   std::array<char, 32> text{};
   std::snprintf(text.data(), text.size(), "%g", value);
   return text.data();
+}
+
+/// "0.125, 0.25, 0.5 or 1"
+std::string cellsText() {
+  std::string text;
+  for (std::size_t i = 0; i < kCells_m.size(); ++i)
+    text += (i == 0 ? "" : i + 1 < kCells_m.size() ? ", " : " or ") + shortText(kCells_m[i]);
+  return text;
 }
 
 }  // namespace
@@ -33,7 +40,7 @@ void requireValid(const WayRequest& request) {
   requireWithin(kClearance_m, request.terrain.highest_m, "clearance [m]");
   if (std::find(kCells_m.begin(), kCells_m.end(), request.terrain.cell_m) == kCells_m.end())
     throw Error(ErrorKind::InvalidArgument,
-                "edge of a cell [m]: write 0.125, 0.25, 0.5 or 1, not " + shortText(request.terrain.cell_m));
+                "edge of a cell [m]: write " + cellsText() + ", not " + shortText(request.terrain.cell_m));
 }
 
 void requireValid(const SearchRequest& request) {
@@ -41,9 +48,7 @@ void requireValid(const SearchRequest& request) {
   requireWithin(kView_m, request.search.view_m, "view [m]");
   requireWithin(kDetection, request.search.detection, "detection");
   requireWithin(kTourStops, static_cast<double>(request.tour.max_stops), "largest number of stops");
-  if (!(request.tour.budget_m >= 0) || std::isinf(request.tour.budget_m))
-    throw Error(ErrorKind::InvalidArgument,
-                "budget of the walk [m]: write a number above 0, not " + shortText(request.tour.budget_m));
+  requireWithin(kBudget_m, request.tour.budget_m, "budget of the walk [m]");
 }
 
 }  // namespace cluxel::tasks
