@@ -52,6 +52,8 @@ const char* remedyText(Remedy remedy) {
       return "pass poses=FILE to name the poses";
     case Remedy::DropStatements:
       return "pass drop_statements=True to drop them";
+    case Remedy::NameStart:
+      return "pass start=PLACE to name the start";
     case Remedy::NameTime:
       return "pass since=TIME to tell from when on scans count as later";
     case Remedy::NameValue:

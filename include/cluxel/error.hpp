@@ -75,6 +75,7 @@ enum class Remedy : std::uint8_t {
   MoveScans,       ///< give scans of the map other poses
   MergeMaps,       ///< merge maps instead of adding scans
   DropStatements,  ///< let operator statements go: MergeOptions::drop_statements
+  NameStart,       ///< name the place where a walk starts
   NameTime,        ///< tell from when on scans count as later
 };
 

@@ -38,6 +38,8 @@ const char* hintFor(Remedy remedy) {
       return "'cluxel merge MAP MAP -o MAP' makes one map of several";
     case Remedy::DropStatements:
       return "--drop-statements drops them";
+    case Remedy::NameStart:
+      return "--from PLACE names the start: X,Y or an object; `ask` takes from=PLACE";
     case Remedy::NameTime:
       return "--since TIME tells from when on scans count as later; `ask` takes since=TIME";
   }

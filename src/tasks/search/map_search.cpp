@@ -45,13 +45,14 @@ Eigen::Vector2d lastStop(const mapping::MapReader& map) {
   std::vector<mapping::Cloud> clouds = map.clouds();
   std::erase_if(clouds, [](const mapping::Cloud& cloud) { return !cloud.has_pose; });
   if (clouds.empty())
-    throw Error(ErrorKind::NotFound, "no scan of the map tells where its sensor stood; name the start (from)");
+    throw Error(ErrorKind::NotFound, "no scan of the map tells where its sensor stood; name the start",
+                Remedy::NameStart);
   const auto last = std::max_element(clouds.begin(), clouds.end(), [](const auto& a, const auto& b) {
     return std::pair(a.time_s, a.id) < std::pair(b.time_s, b.id);  // no time is earlier than any
   });
   if (clouds.size() > 1 && !last->time_s)
-    throw Error(ErrorKind::NotFound,
-                "the scans of the map have no times, so that none is the last; name the start (from)");
+    throw Error(ErrorKind::NotFound, "the scans of the map have no times, so that none is the last; name the start",
+                Remedy::NameStart);
   return last->T_map_sensor.translation().head<2>();
 }
 
