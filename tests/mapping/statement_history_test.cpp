@@ -188,7 +188,8 @@ TEST_F(StatementHistory, OfMapsWhoseRulesDecideAlikeIsMergedInAnyOrder) {
     for (const bool is_first : {true, false}) {
       const std::vector<MapToMerge> maps =
           is_first ? std::vector<MapToMerge>{{last}, {plain}} : std::vector<MapToMerge>{{plain}, {last}};
-      mergeMaps(maps, map("all"), {.change = {}, .use = is_first ? 0 : 1, .force = true}, silence());
+      mergeMaps(maps, map("all"), {.change = {}, .use = is_first ? 0 : 1, .force = true, .drop_statements = true},
+                silence());
       EXPECT_TRUE(canonicalText(map("all")) == canonicalText(map("scratch"))) << last << is_first;
       EXPECT_EQ(knownStatements(MapReader(map("all")).quads()).size(), statementsOf(last).size());
       for (const KnownStatement& known : knownStatements(MapReader(map("all")).quads()))
