@@ -13,7 +13,7 @@ from conftest import run
 @pytest.fixture(scope="module")
 def visited(campus, tmp_path_factory):
     folder = tmp_path_factory.mktemp("visited")
-    campus_of_two_visits = ["--seed", 5, "--stops", 3, "--size", 50, "--points-per-stop", 20000, "--visits", 2]
+    campus_of_two_visits = ["--seed", 7, "--stops", 3, "--size", 50, "--points-per-stop", 20000, "--visits", 2]
     run("simulate", folder / "scans", *campus_of_two_visits)
     return campus.build(folder / "visited.clx", folder / "scans")
 
@@ -45,6 +45,7 @@ def test_changes_and_states_are_those_of_the_program(visited):
     for part, row in zip(found.parts, told["parts"]):
         assert (part.part.object, part.before, part.after) == (row["object"], row["before"], row["after"])
     assert {states.after for states in found.states} > {"absent"}
+    assert {change.kind for change in found.changes} == {"vanished", "appeared", "moved"} and len(found.parts) > 0
 
 
 def test_points_are_those_of_the_program(visited, tmp_path):
