@@ -93,7 +93,7 @@ TEST_F(FacadeMerge, ForceReplacesAnotherFileAndADryRunNone) {
   const Map a = built(first, "a.clx"), b = built(rest, "b.clx");
   const fs::path target = folder.path() / "target.clx";
   fs::copy_file(a.file(), target);
-  const MergeOptions kept{.force = true, .drop_statements = true, .dry_run = true};
+  const MergeOptions planning{.force = true, .drop_statements = true, .dry_run = true};
   try {
     Map::merge({a.file(), b.file()}, target, {}, silence);
     FAIL() << "another map is there";
@@ -119,9 +119,9 @@ TEST_F(FacadeMerge, ForceReplacesAnotherFileAndADryRunNone) {
   writeFile(target, stated);
   EXPECT_THAT(refusalOf({a.file(), b.file()}, {.drop_statements = true}, Remedy::None),
               ::testing::HasSubstr("goes with force"));
-  const MapChanges planned = Map::mergeInto({a.file(), b.file()}, target, kept, silence);
+  const MapChanges planned = Map::mergeInto({a.file(), b.file()}, target, planning, silence);
   EXPECT_TRUE(readFile(target) == stated) << "a dry run wrote";
-  EXPECT_THROW(Map::merge({a.file(), b.file()}, target, kept, silence), Error);
+  EXPECT_THROW(Map::merge({a.file(), b.file()}, target, planning, silence), Error);
   EXPECT_TRUE(readFile(target) == stated);
   const MapChanges done =
       Map::mergeInto({a.file(), b.file()}, target, {.force = true, .drop_statements = true}, silence);
