@@ -3,9 +3,10 @@
 #include "mapping/statements/excluded_types.hpp"
 
 #include <algorithm>
+#include <map>
 #include <optional>
 #include <set>
-#include <string>
+#include <utility>
 
 #include "mapping/statements/applied_statements.hpp"
 #include "rdf/vocabulary.hpp"
@@ -27,30 +28,57 @@ class Exclusions {
         history_(idOf(std::string(rdf::vocabulary::kGraphHistory))),
         type_(idOf(rdf::vocabulary::rdf("type"))),
         sub_class_(idOf(rdf::vocabulary::rdfs("subClassOf"))),
-        disjoint_(idOf(std::string(rdf::vocabulary::kOwl) + "disjointWith")) {}
+        disjoint_(idOf(std::string(rdf::vocabulary::kOwl) + "disjointWith")),
+        stated_class_(idOf(clx("statedClass"))),
+        kind_(idOf(clx("statementKind"))),
+        effect_(idOf(clx("statementEffect"))),
+        about_(idOf(clx("appliesTo"))) {}
 
   std::vector<rdf::Triple> all() {
-    const auto stated_class = idOf(clx("statedClass"));
-    if (!operator_ || !observed_ || !type_ || !stated_class) return {};
-    const auto kind = idOf(clx("statementKind")), effect = idOf(clx("statementEffect")), about = idOf(clx("appliesTo"));
-    forEach({.s = {}, .p = stated_class, .o = {}, .g = operator_}, [&](const rdf::QuadIds& stated) {
-      if (textOf(stated.s, effect, observed_) != nameOf(StatementEffect::Applied)) return;
-      const std::string written = textOf(stated.s, kind, operator_);
-      std::set<TermId> classes;
-      if (written == "is not") addWithSubclasses(stated.o, classes);
-      if (written == "is") addDisjoint(stated.o, classes);
-      if (about && !classes.empty())
-        forEach({.s = stated.s, .p = about, .o = {}, .g = observed_}, [&](const rdf::QuadIds& applied) {
-          for (const TermId excluded : classes) excluded_.push_back({applied.o, *type_, excluded});
-        });
+    std::vector<rdf::Triple> excluded;
+    if (!operator_ || !observed_ || !type_ || !stated_class_ || !about_) return excluded;
+    forEach({.s = {}, .p = stated_class_, .o = {}, .g = operator_}, [&](const rdf::QuadIds& stated) {
+      if (!isApplied(stated.s)) return;
+      const std::set<TermId>& classes = ruledOutBy(kindOf(stated.s), stated.o);
+      if (classes.empty()) return;
+      forEach({.s = stated.s, .p = about_, .o = {}, .g = observed_}, [&](const rdf::QuadIds& applied) {
+        for (const TermId one : classes) excluded.push_back({applied.o, *type_, one});
+      });
     });
-    std::sort(excluded_.begin(), excluded_.end());
-    excluded_.erase(std::unique(excluded_.begin(), excluded_.end()), excluded_.end());
-    return std::move(excluded_);
+    std::sort(excluded.begin(), excluded.end());
+    excluded.erase(std::unique(excluded.begin(), excluded.end()), excluded.end());
+    return excluded;
   }
 
- private:
+  /// The IRIs of the statements that rule out the class of the object.
+  std::vector<std::string> statementsAgainst(const std::string& object_iri, const std::string& class_iri) {
+    std::vector<std::string> found;
+    const auto object = idOf(object_iri), class_id = idOf(class_iri);
+    if (!operator_ || !observed_ || !stated_class_ || !about_ || !object || !class_id) return found;
+    forEach({.s = {}, .p = about_, .o = object, .g = observed_}, [&](const rdf::QuadIds& applied) {
+      if (!isApplied(applied.s)) return;
+      forEach({.s = applied.s, .p = stated_class_, .o = {}, .g = operator_}, [&](const rdf::QuadIds& stated) {
+        if (ruledOutBy(kindOf(stated.s), stated.o).contains(*class_id)) found.push_back(reader_.termOf(stated.s).text);
+      });
+    });
+    return found;
+  }
+
+  /// By a statement of this kind, "is" or "is not", about this class.
+  const std::set<TermId>& ruledOutBy(const std::string& kind, TermId class_id) {
+    const auto [place, is_new] = ruled_out_.try_emplace({kind, class_id});
+    if (is_new && kind == nameOf(StatementKind::IsNot)) addWithSubclasses(class_id, place->second);
+    if (is_new && kind == nameOf(StatementKind::Is)) addDisjoint(class_id, place->second);
+    return place->second;
+  }
+
   std::optional<TermId> idOf(const std::string& iri) const { return reader_.idOf(Term::iri(iri)); }
+
+ private:
+  bool isApplied(TermId statement) const {
+    return textOf(statement, effect_, observed_) == nameOf(StatementEffect::Applied);
+  }
+  std::string kindOf(TermId statement) const { return textOf(statement, kind_, operator_); }
 
   template <typename Visit>
   void forEach(const rdf::QuadPattern& pattern, const Visit& visit) const {
@@ -90,13 +118,27 @@ class Exclusions {
 
   const rdf::QuadReader& reader_;
   std::optional<TermId> operator_, observed_, ontology_, history_, type_, sub_class_, disjoint_;
-  std::vector<rdf::Triple> excluded_;
+  std::optional<TermId> stated_class_, kind_, effect_, about_;
+  std::map<std::pair<std::string, TermId>, std::set<TermId>> ruled_out_;  ///< by kind and class of a statement
 };
 
 }  // namespace
 
 std::vector<rdf::Triple> excludedTypes(const rdf::QuadReader& reader) {
   return Exclusions(reader).all();
+}
+
+std::vector<std::string> statementsAgainst(const rdf::QuadReader& reader, const std::string& object_iri,
+                                           const std::string& class_iri) {
+  std::vector<std::string> found = Exclusions(reader).statementsAgainst(object_iri, class_iri);
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+bool rulesOut(const rdf::QuadReader& reader, const Statement& statement, const std::string& class_iri) {
+  Exclusions exclusions(reader);
+  const auto stated = exclusions.idOf(statement.value.text), asked = exclusions.idOf(class_iri);
+  return stated && asked && exclusions.ruledOutBy(std::string(nameOf(statement.kind)), *stated).contains(*asked);
 }
 
 }  // namespace cluxel::mapping

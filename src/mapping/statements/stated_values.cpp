@@ -75,13 +75,14 @@ bool isAnyObject(const std::string& iri) {
               "the map's ontology knows no class <" + iri + ">" + (hint.empty() ? "" : "; " + hint));
 }
 
-void requireClass(const std::string& iri, const rules::ClassCatalogue& classes) {
+/// An object can be stated not to be of a class that it could not be stated to be of: SPARQL rules may derive any.
+void requireClass(StatementKind kind, const std::string& iri, const rules::ClassCatalogue& classes) {
   if (classes.find(iri) == nullptr) failUnknownClass(iri, classes);
-  if (isAnyObject(iri))
+  if (isAnyObject(iri) || classes.isA(clx("Object"), iri))
     throw Error(
         ErrorKind::InvalidArgument,
         "<" + iri + "> is no class of objects that tells them apart; state one such as clx:Tree or clx:StreetSign");
-  if (!isClassOfObjects(iri, classes))
+  if (kind == StatementKind::Is && !isClassOfObjects(iri, classes))
     throw Error(ErrorKind::InvalidArgument,
                 noClassOfObjects(iri) +
                     "; state one such as clx:Tree, or write in the ontology that it is rdfs:subClassOf one");
@@ -129,8 +130,7 @@ bool isClassOfObjects(const std::string& iri, const rules::ClassCatalogue& class
 }
 
 std::string noClassOfObjects(const std::string& iri) {
-  return "<" + iri +
-         "> is no class of objects: it is not below clx:Object, so no question about objects would find what has it";
+  return "<" + iri + "> is no class of objects: it is not below clx:Object";
 }
 
 void requireStatable(const std::string& property) {
@@ -145,7 +145,7 @@ void requireStatable(const Statement& statement, const rules::ClassCatalogue& cl
   switch (statement.kind) {
     case StatementKind::Is:
     case StatementKind::IsNot:
-      return requireClass(statement.value.text, classes);
+      return requireClass(statement.kind, statement.value.text, classes);
     case StatementKind::IgnoreRegion:
       return requireRegion(statement.region);
     case StatementKind::Remove:

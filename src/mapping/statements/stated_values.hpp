@@ -14,15 +14,16 @@ namespace cluxel::mapping {
 /// Whether the ontology knows the class as one of objects: no part, place or cluxel, and not just any object.
 bool isClassOfObjects(const std::string& iri, const rules::ClassCatalogue& classes);
 
-/// "<IRI> is no class of objects: it is not below clx:Object, so no question about objects would find what has it"
+/// "<IRI> is no class of objects: it is not below clx:Object"
 std::string noClassOfObjects(const std::string& iri);
 
 /// Throws Error (InvalidArgument) for a property that the map computes, such as clx:height.
 void requireStatable(const std::string& property);
 
-/// The same for a fact about such a property, a fact whose value is a blank node or no UTF-8, a class that is none of
-/// objects (a part, a place, a cluxel), and a region without area or with a corner farther than 1000 km from its scan.
-/// Throws Error (NotFound) for a class that the ontology does not know.
+/// The same for a fact about such a property, a fact whose value is a blank node or no UTF-8, "is" a class that is none
+/// of objects (a part, a place, a cluxel), "is" or "is not" one that says no more than that it is an object, and a
+/// region without area or with a corner farther than 1000 km from its scan. Throws Error (NotFound) for a class that
+/// the ontology does not know.
 void requireStatable(const Statement& statement, const rules::ClassCatalogue& classes);
 
 /// As requireStatable(), but a statement of a class that the ontology does not know is noted and kept: such as one of a

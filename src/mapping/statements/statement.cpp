@@ -156,6 +156,10 @@ Statement completedStatement(Statement statement, const Written& written, const 
 
 }  // namespace
 
+std::string_view nameOf(StatementKind kind) {
+  return kKindNames[static_cast<std::size_t>(kind)];
+}
+
 ContentHash Statement::id() const {
   ContentHasher hasher;
   hasher.add(kind).addText(property).addText(kind == StatementKind::Remove ? "" : toNTriples(value));
@@ -177,7 +181,7 @@ std::string textOf(const Statement& statement) {
     if (iri.starts_with(rdf::vocabulary::kRdfs)) return "rdfs:" + iri.substr(rdf::vocabulary::kRdfs.size());
     return "<" + iri + ">";
   };
-  const std::string name(kKindNames[static_cast<std::size_t>(statement.kind)]);
+  const std::string name(nameOf(statement.kind));
   switch (statement.kind) {
     case StatementKind::Is:
     case StatementKind::IsNot:
@@ -199,7 +203,7 @@ std::vector<Quad> quadsOf(const Statement& statement) {
     quads.push_back({subject, Term::iri(property), object, graph});
   };
   add(rdf::vocabulary::rdf("type"), Term::iri(clx("OperatorStatement")));
-  add(clx("statementKind"), Term::literal(kKindNames[static_cast<std::size_t>(statement.kind)]));
+  add(clx("statementKind"), Term::literal(nameOf(statement.kind)));
   if (statement.kind == StatementKind::Is || statement.kind == StatementKind::IsNot)
     add(clx("statedClass"), statement.value);
   if (statement.kind == StatementKind::Fact) {

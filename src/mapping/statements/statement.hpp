@@ -7,6 +7,7 @@
 #include <functional>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "cluxel/term.hpp"
@@ -22,6 +23,9 @@ enum class StatementKind : std::uint8_t {
   IgnoreRegion,  ///< there are no objects in this region
   Fact           ///< a property of the object, such as rdfs:label
 };
+
+/// As a statement's clx:statementKind: "is", "is not", "remove", "ignore region", "fact".
+std::string_view nameOf(StatementKind kind);
 
 /// Points of scans by their numbers, ascending. They keep their names when a scan moves.
 using PointAnchor = std::map<scan::ScanId, std::vector<std::uint32_t>>;

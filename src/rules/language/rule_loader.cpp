@@ -209,7 +209,7 @@ void checkIsObject(const Rule& rule, const RuleSet& rules, FaultList& faults) {
   const std::string name = rules.shorten(rule.class_iri);
   faults.error(rule.at,
                "the class " + name + " of rule '" + rule.id +
-                   "' is not below clx:Object, so no question about objects would find what the rule makes",
+                   "' is not below clx:Object, by which questions find objects of any class",
                "write in the ontology: " + name + " rdfs:subClassOf clx:Object, or a class that is below it");
 }
 
