@@ -3,14 +3,14 @@
 #include "tasks/derived_classes.hpp"
 
 #include <algorithm>
-#include <cctype>
 
 #include "mapping/inference/rule_queries.hpp"
-#include "mapping/inference/rule_shape.hpp"
 #include "mapping/statements/excluded_types.hpp"
 #include "rdf/map_iris.hpp"
+#include "rdf/ontology/ontology.hpp"
 #include "rdf/vocabulary.hpp"
 #include "tasks/objects_of_class.hpp"
+#include "tasks/rule_classes.hpp"
 
 namespace cluxel::tasks {
 
@@ -28,35 +28,30 @@ std::vector<Term> valuesOf(const rdf::QuadReader& quads, rdf::TermId subject, co
   return values;
 }
 
-/// Whether the rule may give the class itself: it names it, and makes types.
-bool mayDerive(const mapping::NamedText& rule, const std::string& class_iri) {
-  const mapping::RuleShape shape = mapping::shapeOf(rule);
-  const std::string type = rdf::vocabulary::rdf("type");
-  bool by_variable = false;
-  for (const sparql::ast::TriplePattern& made : shape.query.construct_template) {
-    if (made.predicate.isVariable() || made.predicate.term().text != type) continue;
-    if (!made.object.isVariable() && made.object.term().text == class_iri) return true;
-    by_variable = by_variable || made.object.isVariable();
-  }
-  // A variable takes the class from an expression, where it is written in full or with a prefix.
-  if (!by_variable) return false;
-  const std::string local = ":" + mapping::localName(class_iri);
-  for (std::size_t at = rule.text.find(local); at != std::string::npos; at = rule.text.find(local, at + 1)) {
-    const std::size_t end = at + local.size();
-    if (end == rule.text.size() ||
-        (std::isalnum(static_cast<unsigned char>(rule.text[end])) == 0 && rule.text[end] != '_'))
-      return true;
-  }
-  return rule.text.find("<" + class_iri + ">") != std::string::npos;
+/// "SPARQL rule F can say clx:Fence of an object, and does not of this one"; empty when it cannot.
+std::string whatItCanSay(const mapping::NamedText& rule, const rules::RuleSet& rules, const rdf::OntologyView& ontology,
+                         const std::string& class_iri) {
+  const std::string begin = "SPARQL rule " + mapping::ruleFileName(rule), name = rules.shorten(class_iri);
+  const std::string end = " of an object, and does not of this one\n";
+  const GivenClasses given = classesGivenBy(rule);
+  if (given.named.contains(class_iri)) return begin + " can say " + name + end;
+  std::string below;
+  for (const std::string& named : given.named)
+    if (ontology.isA(named, class_iri)) below += (below.empty() ? "" : " or ") + rules.shorten(named);
+  if (!below.empty()) return begin + " can say " + below + ", which is " + name + "," + end;
+  return given.is_open ? begin + " computes what it says, so that it may say " + name + end : "";
 }
 
-bool isRuledOut(const rdf::QuadReader& quads, const ContentHash& object, const std::string& class_iri) {
-  const auto subject = quads.idOf(Term::iri(rdf::iriOfObject(object)));
-  const auto type = quads.idOf(Term::iri(rdf::vocabulary::rdf("type")));
-  const auto class_id = quads.idOf(Term::iri(class_iri));
-  if (!subject || !type || !class_id) return false;
-  const std::vector<rdf::Triple> excluded = mapping::excludedTypes(quads);
-  return std::binary_search(excluded.begin(), excluded.end(), rdf::Triple{*subject, *type, *class_id});
+/// Tells whether statements rule out the class.
+std::string ruledOutText(const rdf::QuadReader& quads, const std::string& object_iri, const std::string& class_iri,
+                         const std::string& name, nlohmann::ordered_json& json) {
+  std::string text;
+  for (const std::string& statement : mapping::statementsAgainst(quads, object_iri, class_iri)) {
+    const std::string id = statement.substr(statement.rfind('/') + 1);
+    json["ruled_out_by"].push_back(id);
+    text += "operator statement " + id + " rules out that a SPARQL rule says " + name + "\n";
+  }
+  return text;
 }
 
 }  // namespace
@@ -96,19 +91,18 @@ std::string sparqlRulesText(const mapping::MapReader& map, const rules::RuleSet&
   const std::string name = rules.shorten(class_iri);
   std::string text;
   if (object) {
-    const std::vector<ContentHash> members = objectsOfClass(map.quads(), class_iri);
-    const bool is_of_class = std::binary_search(members.begin(), members.end(), *object);
+    const bool is_of_class = isOfClass(map.quads(), *object, class_iri);
     json["is_of_class"] = is_of_class;
     text = derivedClassesText(map, rules, *object, json);
     if (is_of_class) return "it is " + name + " already\n" + text;
-    if (isRuledOut(map.quads(), *object, class_iri))
-      text += "an operator statement rules out that a SPARQL rule says " + name + "\n";
+    text += ruledOutText(map.quads(), rdf::iriOfObject(*object), class_iri, name, json);
   }
+  if (!object) return text;
+  const rdf::OntologyView ontology = ontologyViewOf(map.quads());
   for (const mapping::NamedText& rule : inputs.sparql_rules)
-    if (object && mayDerive(rule, class_iri)) {
-      const std::string file = mapping::ruleFileName(rule);
-      json["sparql_rules"].push_back(file);
-      text += "SPARQL rule " + file + " can say " + name + " of an object, and does not of this one\n";
+    if (const std::string of_rule = whatItCanSay(rule, rules, ontology, class_iri); !of_rule.empty()) {
+      json["sparql_rules"].push_back(mapping::ruleFileName(rule));
+      text += of_rule;
     }
   return text;
 }

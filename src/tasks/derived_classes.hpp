@@ -27,8 +27,9 @@ std::string derivedClassesText(const mapping::MapReader& map, const rules::RuleS
                                nlohmann::ordered_json& json);
 
 /// What SPARQL rules have to do with the class, about which `explain` is asked why an object is not of it: that one
-/// derives it, that a statement rules it out, or the files that name it. Empty when there is nothing to tell. Sets
-/// "is_of_class" and "sparql_rules" in `json`. `object`: none for what is no object; of it there is nothing to tell.
+/// derives it, that statements rule it out, or the files of those that can give it or a class below it, or that compute
+/// the class. Empty when there is nothing to tell. Sets "is_of_class", "ruled_out_by" (ids of statements) and
+/// "sparql_rules" in `json`. `object`: none for what is no object; of it there is nothing to tell.
 std::string sparqlRulesText(const mapping::MapReader& map, const rules::RuleSet& rules,
                             const mapping::MapInputs& inputs, const std::optional<ContentHash>& object,
                             const std::string& class_iri, nlohmann::ordered_json& json);

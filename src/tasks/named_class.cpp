@@ -159,7 +159,7 @@ void requireClassOfObjects(const rdf::OntologyView& ontology, const std::string&
 
 void requireClassOfObjects(const mapping::MapReader& map, const rdf::OntologyView& ontology,
                            const std::string& class_iri) {
-  if (objectsOfClass(map, class_iri).empty()) requireClassOfObjects(ontology, class_iri);
+  if (!hasObjectOfClass(map, class_iri)) requireClassOfObjects(ontology, class_iri);
 }
 
 Namespaces namespacesOf(const mapping::MapInputs& inputs) {

@@ -17,7 +17,13 @@ namespace cluxel::tasks {
 /// the map does not hold; it is among them. Cost and memory: those of the things of the class.
 std::vector<ContentHash> objectsOfClass(const rdf::QuadReader& quads, const std::string& class_iri);
 
+/// Whether the object is among them. Cost: a look-up.
+bool isOfClass(const rdf::QuadReader& quads, const ContentHash& object, const std::string& class_iri);
+
 /// Those that the map holds, by their numbers in MapReader::objects(). Ascending.
 std::vector<std::uint32_t> objectsOfClass(const mapping::MapReader& map, const std::string& class_iri);
+
+/// Whether there is one of these. Cost: that of the things of the class up to the first object.
+bool hasObjectOfClass(const mapping::MapReader& map, const std::string& class_iri);
 
 }  // namespace cluxel::tasks
