@@ -11,6 +11,7 @@ namespace cluxel::app {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 class StateCommand : public Program {
  protected:
@@ -79,6 +80,45 @@ TEST_F(StateCommand, ANewLabelReplacesTheEarlierOneAndNotesAreAdded) {
   EXPECT_EQ(valuesOf("rdfs:label"), "v\r\nnorth\r\n");
   EXPECT_EQ(listed(), 3u);
   expectError(state(tree + " --label east --label west"), 2, "state: --label is given 2 times; give it once");
+}
+
+TEST_F(StateCommand, StatementsThatCanBothBeTrueStandTogether) {
+  const auto stated = [] { return "--object " + one("Object ; clx:rule \"operator\""); };
+  ASSERT_EQ(state("--object " + one("Tree") + " --is Barrier").code, 0);
+  for (const char* derived : {"Fence", "Wall"}) {
+    const Outcome outcome = state(stated() + " --is-not " + derived);
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_THAT(outcome.err, Not(HasSubstr("replaces")));
+  }
+  EXPECT_EQ(listed(), 3u);
+  EXPECT_EQ(one("Barrier ; clx:rule \"operator\"").size(), 32u) << "it is the barrier that was stated";
+  EXPECT_THAT(state(stated() + " --is Fence").err, HasSubstr("replaces the statement"));
+  const std::string list = state("--list").out;
+  EXPECT_THAT(list, HasSubstr("is clx:Fence"));
+  EXPECT_THAT(list, HasSubstr("is not clx:Wall"));
+  EXPECT_THAT(list, Not(HasSubstr("is clx:Barrier")));
+  EXPECT_THAT(list, Not(HasSubstr("is not clx:Fence")));
+  EXPECT_EQ(listed(), 2u) << "a barrier is no fence by itself, and a fence that is none cannot be";
+}
+
+TEST_F(StateCommand, TellsWhichDerivedClassesAStatementRulesOut) {
+  const fs::path own = path("own.rq");
+  writeFile(own,
+            "PREFIX clx: <https://w3id.org/cluxel/ontology#>\n"
+            "CONSTRUCT { ?b a clx:Fence } WHERE { ?b a clx:Barrier }\n");
+  ASSERT_EQ(run("rules apply " + map().string() + " --sparql-rules " + own.string()).code, 0);
+  ASSERT_EQ(state("--object " + one("Tree") + " --is Barrier").code, 0);
+  const std::string fence = one("Fence ; clx:rule \"operator\""), said = "before, SPARQL rule own.rq said of it";
+  EXPECT_THAT(state("--object " + fence + " --is-not Wall").err, Not(HasSubstr(said))) << "it stays a fence";
+  const Outcome stated = state("--object " + fence + " --is-not Fence");
+  ASSERT_EQ(stated.code, 0) << stated.err;
+  EXPECT_THAT(stated.err, HasSubstr(said + " Fence"));
+  const std::string why_not = "explain " + map().string() + " " + fence + " --why-not Fence";
+  EXPECT_THAT(run(why_not).out, HasSubstr("rules out that a SPARQL rule says clx:Fence"));
+  const nlohmann::json json = nlohmann::json::parse(run(why_not + " --json").out);
+  EXPECT_FALSE(json.at("is_of_class").get<bool>());
+  ASSERT_EQ(json.at("ruled_out_by").size(), 1u);
+  EXPECT_THAT(state("--list").out, HasSubstr(json.at("ruled_out_by")[0].get<std::string>().substr(0, 8)));
 }
 
 TEST_F(StateCommand, ALabelDoesNotControlTheTerminal) {

@@ -10,6 +10,8 @@
 #include "mapping/build/operator_statements.hpp"
 #include "mapping/change/statement_change.hpp"
 #include "mapping/facts/semantic_layer.hpp"
+#include "mapping/statements/applied_statements.hpp"
+#include "mapping/statements/excluded_types.hpp"
 #include "rdf/map_iris.hpp"
 #include "rules/language/rule_loader.hpp"
 #include "tasks/derived_classes.hpp"
@@ -79,7 +81,8 @@ void refuseWholeClass(const mapping::MapReader& map, const ContentHash& id) {
           "possible");
 }
 
-/// What of an object there is only one of: its class and its label, apart from labels in some language.
+/// What of an object an earlier statement may be replaced in: its class and its label, apart from labels in some
+/// language.
 enum class Single : std::uint8_t { Nothing, Class, Label };
 
 Single singleOf(const Statement& statement) {
@@ -97,32 +100,41 @@ Single singleOf(const Statement& statement) {
   }
 }
 
+/// Whether the new statement takes the place of an earlier one about the same object. Of its class several may hold:
+/// "is a barrier" and "is no fence". One that says the same of other points is replaced, too.
+bool takesPlaceOf(const Statement& added, const Statement& earlier, const rules::ClassCatalogue& classes) {
+  const Single single = singleOf(earlier);
+  if (single == Single::Nothing || singleOf(added) != single || added.id() == earlier.id()) return false;
+  const bool is_same = added.kind == earlier.kind && added.value == earlier.value;
+  return single == Single::Label || is_same || !areCompatible(added, earlier, classes);
+}
+
 /// Withdraws earlier statements about the object in whose place new ones come.
 /// Returns what is to be told when the change has succeeded.
 std::vector<std::string> replaceEarlier(const mapping::MapReader& map, const ContentHash& object,
                                         mapping::StatementEdit& edit) {
   std::vector<std::string> notes;
+  const rules::ClassCatalogue classes = mapping::parseInputs(map.inputs()).rules.catalogue;
   for (const mapping::KnownStatement& known : mapping::knownStatements(map.quads())) {
     if (known.object != rdf::iriOfObject(object)) continue;
-    const Single single = singleOf(known.statement);
     const ContentHash id = known.statement.id();
-    const auto comesInPlace = [&](const Statement& added) { return singleOf(added) == single && added.id() != id; };
-    if (single == Single::Nothing || std::none_of(edit.added.begin(), edit.added.end(), comesInPlace)) continue;
+    if (std::none_of(edit.added.begin(), edit.added.end(),
+                     [&](const Statement& added) { return takesPlaceOf(added, known.statement, classes); }))
+      continue;
     edit.withdrawn.push_back(id);
     notes.push_back("replaces the statement " + id.hex() + ": " + textOf(known.statement));
   }
   return notes;
 }
 
-/// What SPARQL rules say of the object now, where a statement is about its class: the report tells of the other rules.
-std::vector<std::string> whatSparqlRulesSay(const mapping::MapReader& map, const ContentHash& object,
-                                            const mapping::StatementEdit& edit) {
+/// What SPARQL rules say of the object now and new statements rule out: the report tells of the other rules.
+std::vector<std::string> whatIsRuledOut(const mapping::MapReader& map, const ContentHash& object,
+                                        const mapping::StatementEdit& edit) {
   std::vector<std::string> notes;
-  if (std::none_of(edit.added.begin(), edit.added.end(),
-                   [](const Statement& added) { return singleOf(added) == Single::Class; }))
-    return notes;
   for (const tasks::DerivedClass& derived : tasks::derivedClassesOf(map.quads(), rdf::iriOfObject(object)))
-    notes.push_back("before, SPARQL rule " + derived.file + " said of it " + classText(derived.class_iri));
+    if (std::any_of(edit.added.begin(), edit.added.end(),
+                    [&](const Statement& added) { return mapping::rulesOut(map.quads(), added, derived.class_iri); }))
+      notes.push_back("before, SPARQL rule " + derived.file + " said of it " + classText(derived.class_iri));
   return notes;
 }
 
@@ -146,8 +158,8 @@ std::vector<std::string> addAboutObject(const mapping::MapReader& map, const Sta
   if (!options.label.empty()) add(StatementKind::Fact, rdf::vocabulary::rdfs("label"), Term::literal(options.label));
   if (!options.note.empty()) add(StatementKind::Fact, rdf::vocabulary::rdfs("comment"), Term::literal(options.note));
   std::vector<std::string> notes = replaceEarlier(map, object, edit);
-  const std::vector<std::string> said = whatSparqlRulesSay(map, object, edit);
-  notes.insert(notes.end(), said.begin(), said.end());
+  const std::vector<std::string> ruled_out = whatIsRuledOut(map, object, edit);
+  notes.insert(notes.end(), ruled_out.begin(), ruled_out.end());
   return notes;
 }
 

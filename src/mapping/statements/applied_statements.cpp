@@ -129,13 +129,6 @@ class Application {
     if (isOfClass(statement)) class_statements_[object].push_back(number);
   }
 
-  bool areCompatible(const Statement& a, const Statement& b) const {
-    if (a.kind == StatementKind::IsNot && b.kind == StatementKind::Is) return areCompatible(b, a);
-    if (a.kind == StatementKind::Is && b.kind == StatementKind::IsNot) return !classes_.isA(a.value.text, b.value.text);
-    if (a.kind == StatementKind::IsNot || b.kind == StatementKind::IsNot) return true;
-    return a.kind == b.kind && a.value.text == b.value.text;
-  }
-
   /// Of the statements about an object's class, those with more points count first, then those with the smaller id. One
   /// that contradicts such a statement is overruled.
   void keepCompatible(std::vector<std::size_t>& stated) {
@@ -145,7 +138,7 @@ class Application {
     std::vector<std::size_t> kept;
     for (const std::size_t number : stated) {
       const bool counts = std::all_of(kept.begin(), kept.end(), [&](std::size_t other) {
-        return areCompatible(result_.outcomes[number].statement, result_.outcomes[other].statement);
+        return areCompatible(result_.outcomes[number].statement, result_.outcomes[other].statement, classes_);
       });
       if (counts)
         kept.push_back(number);
@@ -239,6 +232,13 @@ class Application {
 std::string_view nameOf(StatementEffect effect) {
   constexpr std::array<std::string_view, 3> kNames{"applied", "dormant", "overruled"};
   return kNames[static_cast<std::size_t>(effect)];
+}
+
+bool areCompatible(const Statement& a, const Statement& b, const rules::ClassCatalogue& classes) {
+  if (a.kind == StatementKind::IsNot && b.kind == StatementKind::Is) return areCompatible(b, a, classes);
+  if (a.kind == StatementKind::Is && b.kind == StatementKind::IsNot) return !classes.isA(a.value.text, b.value.text);
+  if (a.kind == StatementKind::IsNot || b.kind == StatementKind::IsNot) return true;
+  return a.kind == b.kind && a.value.text == b.value.text;
 }
 
 AppliedStatements applyStatements(const std::vector<Statement>& statements, std::vector<SemanticObject> objects,

@@ -57,6 +57,10 @@ AppliedStatements applyStatements(const std::vector<Statement>& statements, std:
                                   const perception::Scene& scene, const rules::ClassCatalogue& classes,
                                   PointOwners& owners, const std::vector<Cloud>& clouds);
 
+/// Whether both statements about the class of one object can be true: an object is of one stated class, and may be
+/// stated not to be of others that are neither this class nor above it.
+bool areCompatible(const Statement& a, const Statement& b, const rules::ClassCatalogue& classes);
+
 /// "operator statements: 3 applied, 1 dormant, 1 against the rules"; empty when there are none.
 std::string summaryOf(const std::vector<StatementOutcome>& outcomes);
 
