@@ -126,6 +126,9 @@ TEST_F(ObjectsOfAClass, AreThoseOfAQueryWhoeverAsks) {
     EXPECT_EQ(namesOf(tasks::objectsOfClass(map, known.iri)), expected) << known.iri;
     EXPECT_EQ(listed(map, known.iri), expected) << known.iri;
     EXPECT_EQ(leftOutOf(known.iri), expected) << known.iri;
+    EXPECT_EQ(tasks::hasObjectOfClass(map, known.iri), !expected.empty()) << known.iri;
+    for (const ContentHash& object : map.objectIds())
+      EXPECT_EQ(tasks::isOfClass(map.quads(), object, known.iri), expected.contains(rdf::iriOfObject(object)));
     EXPECT_EQ(unlessRefused([&] { return served(served_map, known.iri); }), expected) << known.iri;
     const auto ofFacade = [&] {
       Names names;
@@ -167,6 +170,21 @@ TEST_F(ObjectsOfAClass, AreListedAsTheClassThatWasAskedFor) {
     const std::string& other = asked(fence).contains(item.object) ? fence : vehicle;
     EXPECT_EQ(item.class_iri, ontology.isA(own, vehicle) ? own : other);
   }
+}
+
+/// A tree that a rule calls an oak is measured as the tree that it is.
+TEST_F(ObjectsOfAClass, AreMeasuredAsWhatTheyAre) {
+  std::map<std::string, double> crowns;
+  for (const auto& item : tasks::inventoryOf(map, tasks::inventoryOfKinds(map, {"Tree"})).items)
+    crowns[item.object] = item.crown_m;
+  std::size_t oaks = 0;
+  for (const auto& item : tasks::inventoryOf(map, tasks::inventoryOfKinds(map, {kOak})).items) {
+    ASSERT_EQ(item.class_iri, kOak);
+    EXPECT_GT(item.crown_m, 0);
+    EXPECT_EQ(item.crown_m, crowns.at(item.object));
+    ++oaks;
+  }
+  EXPECT_GT(oaks, 0U);
 }
 
 TEST_F(ObjectsOfAClass, AreExplainedWithTheRulesThatSaySo) {
@@ -219,6 +237,9 @@ TEST_F(ObjectsOfAClass, AreThoseThatTheMapHolds) {
     const rdf::QuadReader quads(environment->read());
     EXPECT_EQ(tasks::objectsOfClass(quads, "http://e.org/C"), (std::vector{one, two}));
     EXPECT_TRUE(tasks::objectsOfClass(quads, "http://e.org/D").empty());
+    const ContentHash three = ContentHash::fromHex("00000000000000000000000000000003");
+    EXPECT_TRUE(tasks::isOfClass(quads, two, "http://e.org/C"));
+    EXPECT_FALSE(tasks::isOfClass(quads, three, "http://e.org/C")) << "history tells what was";
   }
 }
 

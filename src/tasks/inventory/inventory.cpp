@@ -196,36 +196,41 @@ std::vector<InventoryItem> sidewalksOf(const mapping::MapReader& map) {
   return found;
 }
 
-InventoryItem measuredItem(const mapping::MapReader& map, const mapping::WholeObject& whole,
-                           const std::string& class_iri) {
+/// How an object is listed.
+struct Listing {
+  std::string class_iri;
+  bool is_tree = false;  ///< by its own class, whatever class was asked for
+};
+
+InventoryItem measuredItem(const mapping::MapReader& map, const mapping::WholeObject& whole, const Listing& listing) {
   const auto& [number, object, cluxels] = whole;
   InventoryItem item;
-  item.kind = map.classNames().nameOf(class_iri);
-  item.class_iri = class_iri;
+  item.kind = map.classNames().nameOf(listing.class_iri);
+  item.class_iri = listing.class_iri;
   item.object = rdf::iriOfObject(object.id);
   item.height_m = mapping::geometryOf(cluxels, mapping::cluxelsOf(object)).top_m;
   item.at = mapping::geometryOf(cluxels, partCluxels(object, rdf::vocabulary::clx("TreeTrunk"))).centroid.head<2>();
-  if (item.kind == "Tree") item.crown_m = crownDiameter(object, cluxels);
+  if (listing.is_tree) item.crown_m = crownDiameter(object, cluxels);
   return item;
 }
 
 /// What to list, by its numbers in MapReader::objects(), each with the class that it is listed as: its own when that is
 /// one of the classes or below one, else the first of them that the map says it is of.
-std::map<std::uint32_t, std::string> listedObjects(const mapping::MapReader& map,
-                                                   const std::vector<std::string>& classes) {
+std::map<std::uint32_t, Listing> listedObjects(const mapping::MapReader& map, const std::vector<std::string>& classes) {
   const rdf::OntologyView ontology = ontologyViewOf(map.quads());
   const std::vector<bool> is_gone = goneAmong(map);
-  std::map<std::uint32_t, std::string> listed;
+  std::map<std::uint32_t, Listing> listed;
   for (const std::string& name : classes) {
     const std::string class_iri = classNamed(map, ontology, name);
     for (const std::uint32_t object : objectsOfClass(map, class_iri)) {
       if (is_gone[object]) continue;
-      std::string& listed_as = listed[object];
       const std::string& own = map.objectClasses()[object];
+      Listing& listing = listed[object];
+      listing.is_tree = ontology.isA(own, rdf::vocabulary::clx("Tree"));
       if (ontology.isA(own, class_iri))
-        listed_as = own;
-      else if (listed_as.empty())
-        listed_as = class_iri;
+        listing.class_iri = own;
+      else if (listing.class_iri.empty())
+        listing.class_iri = class_iri;
     }
   }
   return listed;
@@ -233,9 +238,9 @@ std::map<std::uint32_t, std::string> listedObjects(const mapping::MapReader& map
 
 /// The objects without their streets, by number. Memory and cost as for forEachWholeObject().
 std::vector<InventoryItem> measuredItems(const mapping::MapReader& map,
-                                         const std::map<std::uint32_t, std::string>& listed) {
+                                         const std::map<std::uint32_t, Listing>& listed) {
   std::vector<bool> is_wanted(map.objectIds().size(), false);
-  for (const auto& [number, class_iri] : listed) is_wanted[number] = true;
+  for (const auto& [number, listing] : listed) is_wanted[number] = true;
   std::map<std::uint32_t, InventoryItem> by_number;
   mapping::forEachWholeObject(map, is_wanted, [&](const mapping::WholeObject& whole) {
     by_number.emplace(whole.number, measuredItem(map, whole, listed.at(whole.number)));

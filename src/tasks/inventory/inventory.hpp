@@ -18,7 +18,7 @@ inline constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
 /// One entry. Sizes that do not apply to its kind are kNotMeasured.
 struct InventoryItem {
   std::string kind;  ///< local name of the class
-  /// Of the object, or clx:ParkingRow or clx:Sidewalk; the class that was asked for where the object is of it besides.
+  /// Of the object, or clx:ParkingRow or clx:Sidewalk; the class asked for where only a SPARQL rule gives it.
   std::string class_iri;
   std::string object;                            ///< IRI of the object or way; empty for a row
   std::string street;                            ///< name of the nearest street; empty: none is known near it

@@ -37,11 +37,13 @@ class RegisterThings {
 };
 
 /// What the map says is of a class, with its place; a place of derived things that has none is where its members are.
-/// Without parking rows: those are in the inventory.
+/// Without objects and parking rows: those are in the inventory.
 std::vector<InventoryItem> thingsTyped(const mapping::MapReader& map, const std::string& class_iri) {
   const std::string query = "PREFIX clx: <" + std::string(rdf::vocabulary::kClx) +
                             "> SELECT ?thing (AVG(?px) AS ?x) (AVG(?py) AS ?y) { ?thing a <" + class_iri +
-                            "> FILTER NOT EXISTS { ?thing a clx:ParkingRow } "
+                            "> FILTER NOT EXISTS { ?thing a clx:ParkingRow } FILTER NOT EXISTS { GRAPH <" +
+                            std::string(rdf::vocabulary::kGraphObserved) +
+                            "> { ?thing clx:confidence ?sure } } "
                             "{ ?thing clx:x ?px ; clx:y ?py } UNION { ?thing clx:hasMember ?m . "
                             "?m clx:x ?px ; clx:y ?py FILTER NOT EXISTS { ?thing clx:x ?own } } } "
                             "GROUP BY ?thing ORDER BY ?thing";
