@@ -39,29 +39,30 @@ std::vector<PlacedObject> placedObjects(const mapping::MapReader& map, const rdf
   return placed;
 }
 
-/// The distance from an object to the nearest other one of its class [m].
-double toNextOfClass(const std::vector<PlacedObject>& objects, std::size_t self) {
-  double nearest = 1e300;
-  for (std::size_t i = 0; i < objects.size(); ++i)
-    if (i != self && objects[i].class_iri == objects[self].class_iri)
-      nearest = std::min(nearest, (objects[i].at - objects[self].at).norm());
-  return nearest;
-}
-
 /// The cells of a class, and which objects are of it.
 struct NearClass {
-  std::string iri;
   std::vector<bool> is_of_class;
   NearestMarked nearest;
 };
 
-/// From an object to the nearest other one of a class [m]; infinite where the object itself is of that class.
+constexpr double kNowhere_m = std::numeric_limits<double>::infinity();
+
+/// The distance from an object to the nearest other one of the class [m].
+double toNextOfClass(const NearClass& near, const std::vector<PlacedObject>& objects, std::size_t self) {
+  double nearest = kNowhere_m;
+  for (std::size_t i = 0; i < objects.size(); ++i)
+    if (i != self && near.is_of_class[objects[i].number])
+      nearest = std::min(nearest, (objects[i].at - objects[self].at).norm());
+  return nearest;
+}
+
+/// From an object to the nearest other thing of a class [m]. The cells of an object that is of the class itself are
+/// marked by itself.
 double distanceTo(const NearClass& near, const std::vector<PlacedObject>& objects, std::size_t self,
                   const TerrainGrid& terrain) {
-  constexpr double infinite = std::numeric_limits<double>::infinity();
-  if (objects[self].class_iri == near.iri) return toNextOfClass(objects, self);
+  if (near.is_of_class[objects[self].number]) return toNextOfClass(near, objects, self);
   const auto cell = terrain.frame.cellAt(objects[self].at);
-  if (!cell || near.is_of_class[objects[self].number]) return infinite;
+  if (!cell) return kNowhere_m;
   return static_cast<double>(near.nearest.distance[*cell]) * terrain.frame.cell_m;
 }
 
@@ -104,9 +105,9 @@ void PlaceLearner::add(const mapping::MapReader& map) {
   for (const rdf::OntologyClass& known : ontology.classes)
     if (ontology.isA(known.iri, rdf::vocabulary::clx("Place"))) near_classes.insert(known.iri);
   for (const std::string& near_class : near_classes) {
-    NearClass near{near_class, none_left_out,
-                   nearestMarked(terrain.frame, cellsWith(map, terrain, near_class, none_left_out))};
+    NearClass near{std::vector<bool>(map.objects().size(), false), {}};
     for (const std::uint32_t object : objectsOfClass(map, near_class)) near.is_of_class[object] = true;
+    near.nearest = nearestMarked(terrain.frame, cellsWith(map, terrain, near_class, near.is_of_class, none_left_out));
     std::vector<double> distance_m;
     for (std::size_t i = 0; i < objects.size(); ++i) distance_m.push_back(distanceTo(near, objects, i, terrain));
     for (const double within_m : params_.distances_m) {

@@ -71,11 +71,17 @@ void markLines(const GridFrame& frame, std::string_view wkt, std::vector<std::ui
 std::vector<std::uint8_t> cellsWith(const mapping::MapReader& map, const TerrainGrid& terrain,
                                     const std::string& class_iri, const std::vector<bool>& is_left_out) {
   std::vector<bool> is_of_class(is_left_out.size(), false);
-  for (const std::uint32_t object : objectsOfClass(map, class_iri)) is_of_class[object] = !is_left_out[object];
+  for (const std::uint32_t object : objectsOfClass(map, class_iri)) is_of_class[object] = true;
+  return cellsWith(map, terrain, class_iri, is_of_class, is_left_out);
+}
+
+std::vector<std::uint8_t> cellsWith(const mapping::MapReader& map, const TerrainGrid& terrain,
+                                    const std::string& class_iri, const std::vector<bool>& is_of_class,
+                                    const std::vector<bool>& is_left_out) {
   std::vector<std::uint8_t> marked(terrain.frame.size(), 0);
   for (std::uint32_t cell = 0; cell < terrain.frame.size(); ++cell)
     for (const std::uint32_t thing : terrain.thingsIn(cell))
-      if (thing != kUnnamedThing && is_of_class[thing]) marked[cell] = 1;
+      if (thing != kUnnamedThing && is_of_class[thing] && !is_left_out[thing]) marked[cell] = 1;
   // A place stands where its members stand.
   const std::string query = "PREFIX clx: <" + std::string(rdf::vocabulary::kClx) + "> SELECT ?x ?y ?thing { ?o a <" +
                             class_iri +

@@ -15,5 +15,9 @@ namespace cluxel::tasks {
 /// where it does not count.
 std::vector<std::uint8_t> cellsWith(const mapping::MapReader& map, const TerrainGrid& terrain,
                                     const std::string& class_iri, const std::vector<bool>& is_left_out);
+/// The same where it is known which objects are of the class, as objectsOfClass() tells.
+std::vector<std::uint8_t> cellsWith(const mapping::MapReader& map, const TerrainGrid& terrain,
+                                    const std::string& class_iri, const std::vector<bool>& is_of_class,
+                                    const std::vector<bool>& is_left_out);
 
 }  // namespace cluxel::tasks
