@@ -134,7 +134,7 @@ std::vector<Eigen::Vector3d> otherOrigins() {
           kReference_m + Eigen::Vector3d(0.01, 7.999, 3)};
 }
 
-TEST_F(MapOrigin, IsToldWithAllItsDigitsAndByWhoRefusesAnother) {
+TEST_F(MapOrigin, IsToldWithAllItsDigitsAlsoWhereScansOfAnotherAreRefused) {
   const Eigen::Vector3d origin = kReference_m + Eigen::Vector3d(0.5600001, 0.7800003, 0.30000001);
   const fs::path map = built(scansWith(origin, {0, 1}));
   const std::string root = rdf::iriOfMapRoot();
@@ -155,6 +155,22 @@ TEST_F(MapOrigin, IsToldWithAllItsDigitsAndByWhoRefusesAnother) {
       EXPECT_NE(std::string(error.what()).find(originText(named)), std::string::npos) << error.what();
   }
   EXPECT_NO_THROW(extendMap(map, scansWith(origin, {2}), {}, silence()));
+}
+
+TEST_F(MapOrigin, AndCoordinateSystemAreBothNamedWhereScansHaveOthers) {
+  const ScanSet scans = opened("frame: outer\ncrs: EPSG:25833\nmap_origin: " + textOf(kReference_m) + "\nscans: [" +
+                               campus->files()[0].string() + "]\n");
+  MapInputs of_map = *inputs;
+  of_map.crs = "EPSG:25832";
+  of_map.map_origin = kSite_m;
+  try {
+    requireFrame(of_map, scans);
+    FAIL() << "the scans lie in another frame";
+  } catch (const Error& error) {
+    for (const std::string& named :
+         {of_map.crs, scans.crs(), originText(of_map.map_origin), originText(scans.mapOrigin())})
+      EXPECT_NE(std::string(error.what()).find(named), std::string::npos) << error.what();
+  }
 }
 
 TEST_F(MapOrigin, ChangesNoObject) {

@@ -36,13 +36,16 @@ void requireFrame(const MapInputs& map, const scan::ScanSet& scans) {
   // A set that names no origin and no coordinate system lies in the map frame.
   const bool other_origin = !scans.mapOrigin().isZero(0) && scans.mapOrigin() != map.map_origin;
   const bool other_crs = !scans.crs().empty() && scans.crs() != map.crs;
-  const std::string theirs = other_crs ? scans.crs() : originText(scans.mapOrigin()),
-                    ours = other_crs ? (map.crs.empty() ? "none" : map.crs) : originText(map.map_origin);
-  if (other_origin || other_crs)
-    throw Error(ErrorKind::InvalidArgument, std::string("the scans' ") +
-                                                (other_crs ? "coordinate system" : "map_origin") +
-                                                " is not the map's: theirs is " + theirs + ", the map's " + ours +
-                                                "; give them in the map's frame, or build the map anew from all scans");
+  std::string differences;
+  if (other_crs)
+    differences = "the scans' coordinate system is not the map's: theirs is " + scans.crs() + ", the map's " +
+                  (map.crs.empty() ? "none" : map.crs) + "; ";
+  if (other_origin)
+    differences += "the scans' map_origin is not the map's: theirs is " + originText(scans.mapOrigin()) +
+                   ", the map's " + originText(map.map_origin) + "; ";
+  if (!differences.empty())
+    throw Error(ErrorKind::InvalidArgument,
+                differences + "give them in the map's frame, or build the map anew from all scans");
   if (!scans.crs().empty() && scans.mapOrigin().isZero(0) && !map.map_origin.isZero(0))
     throw Error(ErrorKind::InvalidArgument,
                 "the scans name the map's coordinate system but not its map_origin, so that their coordinates may be "

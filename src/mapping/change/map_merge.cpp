@@ -18,6 +18,7 @@
 #include "mapping/map_reader.hpp"
 #include "mapping/map_state.hpp"
 #include "mapping/merged_replacement.hpp"
+#include "mapping/origin_text.hpp"
 #include "mapping/statements/statement_history.hpp"
 #include "mapping/window/former_objects.hpp"
 #include "mapping/window/lent_decisions.hpp"
@@ -30,6 +31,10 @@ namespace cluxel::mapping {
 namespace fs = std::filesystem;
 
 namespace {
+
+std::string frameText(const MapInputs& map) {
+  return "map_origin " + originText(map.map_origin) + " and coordinate system " + (map.crs.empty() ? "none" : map.crs);
+}
 
 /// File names differ between machines, and mean nothing: except those of SPARQL rules, which stand in the facts.
 std::vector<std::string> textsOf(const std::vector<NamedText>& named, bool with_names = false) {
@@ -115,7 +120,8 @@ class Merge {
       if (!moved && (mine.map_origin != first.map_origin || mine.crs != first.crs))
         throw Error(ErrorKind::InvalidArgument,
                     maps_[i].file.string() + ": has another map origin or coordinate system than " +
-                        maps_[0].file.string() + "; name the transform between the frames",
+                        maps_[0].file.string() + ": " + frameText(mine) + ", there " + frameText(first) +
+                        "; name the transform between the frames",
                     Remedy::NameTransform);
       const auto differences = differencesBetween(first, mine);
       if (!differences.empty() && !params_.use)

@@ -128,7 +128,7 @@ void addMap(const MapInputs& inputs, const std::vector<Cloud>& clouds, FactSink&
   facts.type(root, rdf::vocabulary::clx("Map"));
   facts.text(root, "frame", "map");
   if (!inputs.crs.empty()) facts.text(root, "crs", inputs.crs);
-  if (!inputs.map_origin.isZero())
+  if (!inputs.map_origin.isZero(0))
     for (const int axis : {0, 1, 2})
       facts.term(root, std::string("origin") + "XYZ"[axis],
                  Term::literal(exactDecimalText(inputs.map_origin[axis]), rdf::vocabulary::xsd("decimal")));
