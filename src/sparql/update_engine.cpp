@@ -251,7 +251,8 @@ void UpdateRun::perform(const ast::DataUpdate& data) {
 std::string remedyForLocked() {
   return "what a build writes follows from scans, rules and ontology. To correct it, insert what holds instead (it "
          "goes "
-         "to graph operator), or change rules or ontology and apply them. To delete operator statements alone, write "
+         "to graph operator), state of an object that it is not of a class, or change rules or ontology and apply "
+         "them. To delete operator statements alone, write "
          "GRAPH <" +
          std::string(rdf::vocabulary::kGraphOperator) +
          "> { ... } in the data or the template, or WITH before it. What follows from an operator statement goes when "

@@ -87,11 +87,15 @@ TEST(MapInputs, WithAxiomsFromWhichNothingIsInferredAreNoted) {
        "@prefix clx: <https://w3id.org/cluxel/ontology#> .\n"
        "my:Baum a owl:Class ; owl:equivalentClass clx:Tree ; owl:sameAs clx:Vehicle ; owl:disjointWith clx:Vehicle .\n"
        "my:Auto a owl:Class ; owl:equivalentClass clx:Vehicle ; owl:deprecated true .\n"
-       "my:owner a owl:FunctionalProperty , owl:TransitiveProperty .\n"});
+       "my:owner a owl:FunctionalProperty , owl:TransitiveProperty .\n"
+       "[] a owl:AllDisjointClasses ; owl:members ( my:Baum my:Auto ) .\n"});
   noteUnusedAxioms(ontology, notes);
-  ASSERT_EQ(notes.texts.size(), 3U);
+  ASSERT_EQ(notes.texts.size(), 4U);
   EXPECT_NE(notes.texts[0].find("from owl:FunctionalProperty (1 statement of the ontology)"), std::string::npos);
-  EXPECT_NE(notes.texts[2].find("from owl:sameAs (1 statement"), std::string::npos);
+  EXPECT_NE(notes.texts[2].find("from owl:members (1 statement of the ontology); write owl:disjointWith"),
+            std::string::npos)
+      << notes.texts[2];
+  EXPECT_NE(notes.texts[3].find("from owl:sameAs (1 statement"), std::string::npos);
   EXPECT_EQ(notes.texts[1],
             "warning: nothing is inferred from owl:equivalentClass (2 statements of the ontology); write "
             "rdfs:subClassOf for each class that is below another");

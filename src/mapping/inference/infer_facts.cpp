@@ -3,6 +3,7 @@
 #include "mapping/inference/infer_facts.hpp"
 
 #include <algorithm>
+#include <string_view>
 #include <utility>
 
 #include "base/free_memory.hpp"
@@ -21,13 +22,24 @@ void noteIgnoredAxioms(const std::vector<std::string>& axioms, ProgressSink& sin
               "statement, or use properties of your own");
 }
 
+namespace {
+
+std::string_view insteadOf(const std::string& axiom) {
+  if (axiom == "owl:equivalentClass") return "rdfs:subClassOf for each class that is below another";
+  if (axiom == "owl:disjointUnionOf")
+    return "rdfs:subClassOf for each class that is below another, and owl:disjointWith for each two that exclude each "
+           "other";
+  // Of owl:AllDisjointClasses, owl:AllDisjointProperties and owl:AllDifferent.
+  if (axiom == "owl:members") return "owl:disjointWith for each two classes that exclude each other";
+  return "what should follow as rdfs:subClassOf, rdfs:subPropertyOf or a SPARQL rule";
+}
+
+}  // namespace
+
 void noteUnusedAxioms(const std::vector<NamedText>& ontology, ProgressSink& sink) {
   for (const auto& [name, count] : rdf::unusedAxioms(ontologySources(ontology))) {
-    const bool is_of_classes = name == "owl:equivalentClass";
     sink.note("warning: nothing is inferred from " + name + " (" + std::to_string(count) +
-              (count == 1 ? " statement" : " statements") + " of the ontology); write " +
-              (is_of_classes ? "rdfs:subClassOf for each class that is below another"
-                             : "what should follow as rdfs:subClassOf, rdfs:subPropertyOf or a SPARQL rule"));
+              (count == 1 ? " statement" : " statements") + " of the ontology); write " + std::string(insteadOf(name)));
   }
 }
 
