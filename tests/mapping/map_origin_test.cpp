@@ -173,6 +173,23 @@ TEST_F(MapOrigin, AndCoordinateSystemAreBothNamedWhereScansHaveOthers) {
   }
 }
 
+TEST_F(MapOrigin, AndCoordinateSystemOfBothMapsAreNamedWhereTheyAreNotMerged) {
+  MapInputs one = *inputs, other = *inputs;
+  one.map_origin = kReference_m;
+  other.map_origin = kSite_m;
+  other.crs = "EPSG:25832";
+  EXPECT_NO_THROW(requireSameFrame("b.clx", one, "a.clx", one));
+  try {
+    requireSameFrame("b.clx", one, "a.clx", other);
+    FAIL() << "the maps lie in different frames";
+  } catch (const Error& error) {
+    EXPECT_EQ(std::string(error.what()),
+              "b.clx: has another map origin or coordinate system than a.clx: map_origin " + originText(kReference_m) +
+                  " and coordinate system none, there map_origin " + originText(kSite_m) +
+                  " and coordinate system EPSG:25832; name the transform between the frames");
+  }
+}
+
 TEST_F(MapOrigin, ChangesNoObject) {
   const Holding here = holdingOf(built(scansWith(kReference_m)));
   EXPECT_GT(here.objects.size(), 5U);

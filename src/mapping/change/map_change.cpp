@@ -53,6 +53,18 @@ void requireFrame(const MapInputs& map, const scan::ScanSet& scans) {
                     originText(map.map_origin));
 }
 
+void requireSameFrame(const fs::path& file, const MapInputs& map, const fs::path& other_file, const MapInputs& other) {
+  const auto frameOf = [](const MapInputs& of_map) {
+    return "map_origin " + originText(of_map.map_origin) + " and coordinate system " +
+           (of_map.crs.empty() ? "none" : of_map.crs);
+  };
+  if (map.map_origin != other.map_origin || map.crs != other.crs)
+    throw Error(ErrorKind::InvalidArgument,
+                file.string() + ": has another map origin or coordinate system than " + other_file.string() + ": " +
+                    frameOf(map) + ", there " + frameOf(other) + "; name the transform between the frames",
+                Remedy::NameTransform);
+}
+
 namespace {
 
 void requireScans(const scan::ScanSet& scans) {

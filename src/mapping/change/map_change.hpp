@@ -20,6 +20,11 @@ namespace cluxel::mapping {
 /// manifest names another map origin or coordinate system than the map's, or when they are in outer coordinates.
 void requireFrame(const MapInputs& map, const scan::ScanSet& scans);
 
+/// Throws Error (InvalidArgument) that names both frames when a map has another map origin or coordinate system than
+/// the one that it is merged with.
+void requireSameFrame(const std::filesystem::path& file, const MapInputs& map, const std::filesystem::path& other_file,
+                      const MapInputs& other);
+
 /// Adds scans, batch by batch. After each commit, readers see the exact map of the scans so far, so that a killed run
 /// continues when it is repeated. Scans that are there with the same pose are passed over, but for later times (with
 /// ChangeParams::takes_given_times, also earlier ones). Throws InputError for a scan that is there with another pose,

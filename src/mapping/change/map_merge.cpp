@@ -9,6 +9,7 @@
 #include "base/file_bytes.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/build/operator_statements.hpp"
+#include "mapping/change/map_change.hpp"
 #include "mapping/change/map_compaction.hpp"
 #include "mapping/change/map_things.hpp"
 #include "mapping/change/place_order.hpp"
@@ -18,7 +19,6 @@
 #include "mapping/map_reader.hpp"
 #include "mapping/map_state.hpp"
 #include "mapping/merged_replacement.hpp"
-#include "mapping/origin_text.hpp"
 #include "mapping/statements/statement_history.hpp"
 #include "mapping/window/former_objects.hpp"
 #include "mapping/window/lent_decisions.hpp"
@@ -31,10 +31,6 @@ namespace cluxel::mapping {
 namespace fs = std::filesystem;
 
 namespace {
-
-std::string frameText(const MapInputs& map) {
-  return "map_origin " + originText(map.map_origin) + " and coordinate system " + (map.crs.empty() ? "none" : map.crs);
-}
 
 /// File names differ between machines, and mean nothing: except those of SPARQL rules, which stand in the facts.
 std::vector<std::string> textsOf(const std::vector<NamedText>& named, bool with_names = false) {
@@ -117,12 +113,7 @@ class Merge {
       const auto environment = rdf::Environment::open(maps_[i].file, rdf::OpenMode::ReadOnly);
       const MapInputs mine = requireFinishedInputs(environment->read(), maps_[i].file);
       const bool moved = maps_[i].has_transform || !maps_[i].T_first_map.matrix().isIdentity(0);
-      if (!moved && (mine.map_origin != first.map_origin || mine.crs != first.crs))
-        throw Error(ErrorKind::InvalidArgument,
-                    maps_[i].file.string() + ": has another map origin or coordinate system than " +
-                        maps_[0].file.string() + ": " + frameText(mine) + ", there " + frameText(first) +
-                        "; name the transform between the frames",
-                    Remedy::NameTransform);
+      if (!moved) requireSameFrame(maps_[i].file, mine, maps_[0].file, first);
       const auto differences = differencesBetween(first, mine);
       if (!differences.empty() && !params_.use)
         throw Error(ErrorKind::InvalidArgument,
