@@ -9,12 +9,14 @@
 #include <set>
 
 #include "cluxel/map.hpp"
+#include "mapping/facts/object_geometry.hpp"
 #include "mapping/small_campus.hpp"
 #include "rdf/map_iris.hpp"
 #include "serve/resources/map_resources.hpp"
 #include "sparql/query_engine.hpp"
 #include "tasks/explanation.hpp"
 #include "tasks/inventory/inventory.hpp"
+#include "tasks/search/place_learning.hpp"
 #include "tasks/search/search_tour.hpp"
 #include "tasks/ways/class_cells.hpp"
 
@@ -98,6 +100,10 @@ class ObjectsOfAClass : public testing::Test {
     }
   }
 
+  Eigen::Vector2d placeOf(const rules::SemanticObject& object) const {
+    return mapping::geometryOf(map.scene().cluxels, mapping::cluxelsOf(object)).centroid.head<2>();
+  }
+
   static Names served(ServedMap& map, const std::string& class_iri) {
     const HttpRequest request;
     const Target target{{}, true, {{"class", class_iri}, {"limit", "10000"}}};
@@ -160,6 +166,35 @@ TEST_F(ObjectsOfAClass, AreKnownToASearchAndStandWhereAWayIsNearThem) {
           EXPECT_EQ(marked[cell], 1) << class_iri;
         }
   }
+}
+
+/// Lamps are poles: near a pole is where another pole or lamp is near.
+TEST_F(ObjectsOfAClass, AreThoseNearWhichPlacesAreLearned) {
+  tasks::PlaceLearner learner({.distances_m = {6}, .least_probability = 0, .least_objects = 2});
+  learner.add(map);
+  std::size_t derived = 0;
+  for (const tasks::LearnedPlace& place : learner.learn()) {
+    const Names near = asked(place.near_class);
+    std::size_t least = 0, inside = 0, of_class = 0;
+    for (const rules::SemanticObject& object : map.objects()) {
+      if (object.class_iri != place.class_iri) continue;
+      ++of_class;
+      if (!near.contains(rdf::iriOfObject(object.id))) continue;
+      ++inside;
+      double nearest_m = 1e300;
+      for (const rules::SemanticObject& other : map.objects())
+        if (other.id != object.id && near.contains(rdf::iriOfObject(other.id)))
+          nearest_m = std::min(nearest_m, (placeOf(other) - placeOf(object)).norm());
+      least += nearest_m <= place.within_m ? 1 : 0;
+    }
+    EXPECT_EQ(place.objects, of_class);
+    EXPECT_GE(place.near, least) << place.class_iri << " near " << place.near_class;
+    if (inside == of_class) {
+      EXPECT_EQ(place.near, least) << place.class_iri << " near " << place.near_class;
+    }
+    derived += inside > 0 && place.class_iri != place.near_class ? 1 : 0;
+  }
+  EXPECT_GT(derived, 0U);
 }
 
 TEST_F(ObjectsOfAClass, AreListedAsTheClassThatWasAskedFor) {
