@@ -3,6 +3,9 @@
 #include "tasks/rule_classes.hpp"
 
 #include <algorithm>
+#include <optional>
+#include <utility>
+#include <vector>
 
 #include "mapping/inference/rule_limits.hpp"
 #include "mapping/inference/rule_shape.hpp"
