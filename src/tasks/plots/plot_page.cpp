@@ -2,10 +2,10 @@
 // All texts are escaped where they become markup, and nowhere else.
 #include "tasks/plots/plot_page.hpp"
 
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <nlohmann/json.hpp>
+
+#include "base/text/short_number.hpp"
 
 namespace cluxel::tasks {
 
@@ -99,14 +99,7 @@ std::string markupElement(std::string_view name, const MarkupAttributes& attribu
 }
 
 std::string plotNumber(double value, int digits) {
-  std::array<char, 64> text{};
-  std::snprintf(text.data(), text.size(), "%.*f", digits, value);
-  std::string number = text.data();
-  if (number.find('.') != std::string::npos) {
-    number.erase(number.find_last_not_of('0') + 1);
-    if (number.ends_with('.')) number.pop_back();
-  }
-  return number == "-0" ? "0" : number;
+  return shortNumber(value, digits);
 }
 
 std::string plotPage(const PlotReport& report) {
