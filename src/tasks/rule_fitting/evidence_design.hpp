@@ -119,7 +119,7 @@ class Design {
     if (line.kind != rules::EvidenceLine::Kind::Curve)
       return terms.push_back(termOf(line.weight_at, what, line.weight));
     for (const rules::EvidenceLine::Knot& knot : line.knots)
-      terms.push_back(termOf(knot.where, what + " at " + shortNumberText(knot.at), knot.log_odds));
+      terms.push_back(termOf(knot.where, what + " at " + sixDigitText(knot.at), knot.log_odds));
   }
 
   /// A number of a line: its parameter, or its value when it is kept.

@@ -20,7 +20,7 @@ double roundestIn(double low, double high) {
   return middle;
 }
 
-std::string shortNumberText(double value) {
+std::string sixDigitText(double value) {
   std::array<char, 64> buffer{};
   std::snprintf(buffer.data(), buffer.size(), "%.6g", value);
   return buffer.data();

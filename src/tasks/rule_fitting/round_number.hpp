@@ -10,7 +10,7 @@ namespace cluxel::tasks {
 /// The middle, to six digits, when low >= high.
 double roundestIn(double low, double high);
 
-/// "2.5" for 2.500000.
-std::string shortNumberText(double value);
+/// To six digits wherever the point is: "2.5" for 2.500000, "1.23457e-05".
+std::string sixDigitText(double value);
 
 }  // namespace cluxel::tasks

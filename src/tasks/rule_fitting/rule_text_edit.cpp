@@ -27,8 +27,8 @@ std::size_t offsetOf(const std::string& text, const SourceLocation& at) {
 }  // namespace
 
 std::string writtenNumber(const FittedNumber& number) {
-  return shortNumberText(number.is_share ? std::clamp(std::round(number.after * 1000) / 1000, 0.001, 0.999)
-                                         : std::round(number.after * 1000) / 1000 + 0.0);
+  return sixDigitText(number.is_share ? std::clamp(std::round(number.after * 1000) / 1000, 0.001, 0.999)
+                                      : std::round(number.after * 1000) / 1000 + 0.0);
 }
 
 std::string withNumbers(const std::string& text, const std::string& file, std::vector<FittedNumber> changes) {

@@ -119,7 +119,7 @@ std::string conditionText(const AttributeCut& cut) {
   const auto& info = perception::attributeInfos()[static_cast<std::size_t>(cut.attribute)];
   const std::string_view unit = rules::unitOf(info.dimension);
   return std::string(info.name) + (cut.at_least ? " >= " : " <= ") +
-         shortNumberText(cut.value / edgesUnit(cut.attribute)) + (unit.empty() ? "" : " " + std::string(unit));
+         sixDigitText(cut.value / edgesUnit(cut.attribute)) + (unit.empty() ? "" : " " + std::string(unit));
 }
 
 }  // namespace cluxel::tasks
