@@ -38,11 +38,18 @@ std::map<std::string, std::multiset<std::pair<ContentHash, std::uint32_t>>> seed
   return seeds;
 }
 
+/// The file of a map of a street, in the folder.
+std::filesystem::path builtStreet(const ScratchFolder& folder, double points_per_stop, double max_range_m) {
+  const SmallCampus campus(
+      {.seed = 5, .stops = 12, .size_m = 150, .points_per_stop = points_per_stop, .max_range_m = max_range_m});
+  std::filesystem::path file = folder.path() / "street.clx";
+  buildMap(scansOf(campus.files()), shippedInputs(), file, {}, silence());
+  return file;
+}
+
 TEST(MapPart, HoldsWhatTheMapSaysOfItsTiles) {
-  const SmallCampus campus({.seed = 5, .stops = 12, .size_m = 150, .points_per_stop = 7000, .max_range_m = 16});
   const ScratchFolder folder;
-  buildMap(scansOf(campus.files()), shippedInputs(), folder.path() / "street.clx", {}, silence());
-  const MapReader map(folder.path() / "street.clx");
+  const MapReader map(builtStreet(folder, 7000, 16));
   const Whole whole(map);
   std::size_t parts = 0, primitives = 0;
   for (std::size_t i = 0; i < map.objects().size(); i += 5) {
@@ -70,10 +77,8 @@ TEST(MapPart, HoldsWhatTheMapSaysOfItsTiles) {
 }
 
 TEST(MapPart, IsAbsentWhenItWouldBeTooLarge) {
-  const SmallCampus campus({.seed = 5, .stops = 12, .size_m = 150, .points_per_stop = 7000, .max_range_m = 25});
   const ScratchFolder folder;
-  buildMap(scansOf(campus.files()), shippedInputs(), folder.path() / "street.clx", {}, silence());
-  const MapReader map(folder.path() / "street.clx");
+  const MapReader map(builtStreet(folder, 7000, 25));
   std::size_t parts = 0;
   for (const SemanticObject& object : map.objects()) {
     const auto part = map.isClassWide(object.id) ? std::nullopt : map.partAroundObject(object.id, {1, 5});
@@ -88,10 +93,8 @@ TEST(MapPart, IsAbsentWhenItWouldBeTooLarge) {
 
 /// Trees share crowns that go on beyond the tiles of one tree. A run over a cut crown would decide otherwise.
 TEST(MapPart, CutsNoPrimitiveOfTheObjectThatItIsAround) {
-  const SmallCampus campus({.seed = 5, .stops = 12, .size_m = 150, .points_per_stop = 20000, .max_range_m = 25});
   const ScratchFolder folder;
-  buildMap(scansOf(campus.files()), shippedInputs(), folder.path() / "street.clx", {}, silence());
-  const MapReader map(folder.path() / "street.clx");
+  const MapReader map(builtStreet(folder, 20000, 25));
   std::size_t parts = 0;
   for (const SemanticObject& object : map.objects()) {
     const auto part = map.isClassWide(object.id) ? std::nullopt : map.partAroundObject(object.id, {1, 5});
@@ -108,10 +111,8 @@ TEST(MapPart, CutsNoPrimitiveOfTheObjectThatItIsAround) {
 
 /// A run over a part cuts what goes on outside, and decides otherwise about it.
 TEST(MapPart, HoldsAllOfTheObjectsThatAreNear) {
-  const SmallCampus campus({.seed = 5, .stops = 12, .size_m = 150, .points_per_stop = 7000, .max_range_m = 25});
   const ScratchFolder folder;
-  buildMap(scansOf(campus.files()), shippedInputs(), folder.path() / "street.clx", {}, silence());
-  const MapReader map(folder.path() / "street.clx");
+  const MapReader map(builtStreet(folder, 7000, 25));
   const auto box_of = [&](const SemanticObject& object) {
     Eigen::AlignedBox2d box;
     for (const PrimitiveIndex i : rules::primitivesOf(object)) {
