@@ -27,7 +27,7 @@ namespace cluxel::mapping {
 /// Increase it with every change of the program that changes stage outputs or facts for the same inputs (perception,
 /// reasoning, facts, closure), or the form in which they are stored. Changes and unfinished builds of maps of an older
 /// program are then refused instead of mixed.
-inline constexpr std::uint32_t kStagesVersion = 20;
+inline constexpr std::uint32_t kStagesVersion = 21;
 
 /// The name of a file relative to a folder; of a file outside of it the last part.
 std::filesystem::path nameWithin(const std::filesystem::path& folder, const std::filesystem::path& file);

@@ -6,7 +6,6 @@
 
 #include "cluxel/error.hpp"
 #include "mapping/map_tables.hpp"
-#include "mapping/stored_grid.hpp"
 
 namespace cluxel::mapping {
 
@@ -141,9 +140,7 @@ MapInputs requireFinishedInputs(const rdf::ReadTransaction& transaction, const s
   if (!requireFinished(file, transaction))
     throw Error(ErrorKind::StoreUnavailable, file.string() + ": holds no map that a build has made; build one first");
   MapInputs inputs = storedInputs(transaction);
-  // Earlier versions stored no grid, also for maps whose tiles lie elsewhere now.
-  if (inputs.hash().hex() != storedState(transaction)->inputs_hash || storedGrid(transaction) != inputs.tileGrid())
-    refuseOtherVersion(file);
+  if (inputs.hash().hex() != storedState(transaction)->inputs_hash) refuseOtherVersion(file);
   return inputs;
 }
 

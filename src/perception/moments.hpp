@@ -7,14 +7,9 @@
 #include <cmath>
 
 #include "perception/clustering/cluxel_tile.hpp"
-#include "perception/clustering/fast_floor.hpp"
+#include "perception/clustering/local_steps.hpp"
 
 namespace cluxel::perception {
-
-/// Rounded down to the step of local coordinates, so that shifts to a neighbouring tile stay exact.
-inline float toLocalStep(double value_m) {
-  return static_cast<float>(static_cast<double>(fastFloor(value_m / kLocalStep_m)) * kLocalStep_m);
-}
 
 /// Sums over points given relative to one origin.
 struct MomentSum {
@@ -64,7 +59,7 @@ struct MomentSum {
     const double mx = x / n, my = y / n, mz = z / n;
     const auto part = [](double value) { return static_cast<float>(value); };
     return {part(n),
-            {toLocalStep(origin.x() + mx), toLocalStep(origin.y() + my), part(origin.z() + mz)},
+            {toLocalStep(origin.x() + mx), toLocalStep(origin.y() + my), toHeightStep(origin.z() + mz)},
             {part(std::max(0.0, xx - x * mx)), part(xy - x * my), part(xz - x * mz), part(std::max(0.0, yy - y * my)),
              part(yz - y * mz), part(std::max(0.0, zz - z * mz))}};
   }

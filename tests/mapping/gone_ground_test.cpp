@@ -46,6 +46,7 @@ class GoneGround : public testing::Test {
   }
   static void TearDownTestSuite() {
     delete scans, delete inputs, delete folder;
+    scans = nullptr, inputs = nullptr, folder = nullptr;  // GoneOnStreets ends in this way, too
     built.clear();
   }
 
@@ -115,7 +116,8 @@ TEST_F(GoneGround, IsThatOfAMapWithoutTheThing) {
   const double free = areaOf(without.ways()), found = areaOf(with.ways()), measured = areaOf(with.measuredWays());
   EXPECT_EQ(areaOf(without.measuredWays()), free);
   EXPECT_LT(measured, free - 1) << "its sides close cells";
-  EXPECT_NEAR(found, free, 0.25);
+  // Cells that points of its foot close are left, where these are in one cluxel with points of the ground.
+  EXPECT_NEAR(found, free, 0.2 * (free - measured));
 }
 
 TEST_F(GoneGround, IsStoredOnlyWhereSomethingIsGone) {

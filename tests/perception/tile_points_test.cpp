@@ -8,6 +8,7 @@
 
 #include "cloud_fixture.hpp"
 #include "cluxel/error.hpp"
+#include "perception/clustering/local_steps.hpp"
 
 namespace cluxel::perception {
 
@@ -52,7 +53,9 @@ TEST(TilePoints, EveryPointOfAScanLiesInExactlyOneSegmentAndNearItsMapPlace) {
       const Eigen::Vector3d p_map =
           toMap(scan.T_map_sensor, {scan.points.x[point], scan.points.y[point], scan.points.z[point]});
       const Eigen::Vector3d back = TileGrid().cornerOf(key) + Eigen::Vector3d(segment.x[i], segment.y[i], segment.z[i]);
-      EXPECT_LT((p_map - back).norm(), 1e-5);
+      EXPECT_LT((p_map - back).head<2>().norm(), 1e-5);
+      EXPECT_LE(std::abs(p_map.z() - back.z()), kHeightStep_m / 2);
+      EXPECT_EQ(back.z(), kHeightStep_m * std::round(back.z() / kHeightStep_m));
       EXPECT_TRUE(segment.x[i] >= 0 && segment.x[i] < 16 && segment.y[i] >= 0 && segment.y[i] < 16);
     }
   EXPECT_TRUE(std::all_of(seen.begin(), seen.end(), [](int count) { return count == 1; }));

@@ -11,6 +11,7 @@
 
 #include "base/radix_order.hpp"
 #include "perception/clustering/fast_floor.hpp"
+#include "perception/clustering/local_steps.hpp"
 #include "perception/moments.hpp"
 #include "perception/simd_vector.hpp"
 
@@ -261,12 +262,12 @@ std::vector<CellStack> stacksOf(const TilePoints& points) {
     const std::int32_t base = sliceOf(lowest[c]);
     stacks[c].base_slice = base;
     stacks[c].slices |= std::uint64_t{1} << static_cast<unsigned>(std::min(63, sliceOf(points.z[i]) - base));
-    if (points.z[i] > lowest[c] + kLowLayer_m) continue;
+    if (points.z[i] - lowest[c] > kLowLayer_m) continue;  // exact, however high the points are
     sum[c] += points.z[i];
     ++low_count[c];
   }
   for (std::size_t c = 0; c < stacks.size(); ++c)
-    if (stacks[c].count > 0) stacks[c].low = static_cast<float>(sum[c] / low_count[c]);
+    if (stacks[c].count > 0) stacks[c].low = toHeightStep(sum[c] / low_count[c]);
   return stacks;
 }
 

@@ -63,6 +63,7 @@ CellKeys::CellKeys(double cell_m, double margin_m) {
   per_m_ = 1.0 / wide_m;
   // A whole number of cells, so that a cell begins at the tile's corner; one more keeps neighbours positive.
   offset_ = (std::ceil(margin_m * per_m_) + 1.0) * wide_m;
+  layers_per_m_ = std::max(1.0, std::floor(kTileSize_m * per_m_)) / kTileSize_m;
 }
 
 void endKeys(std::vector<std::uint64_t>& cell_key) {

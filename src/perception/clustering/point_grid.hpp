@@ -36,7 +36,7 @@ class CellKeys {
   /// `margin_m`: how far coordinates may lie outside the tile.
   CellKeys(double cell_m, double margin_m);
   std::uint64_t operator()(float x, float y, float z) const {
-    return cell(x, offset_) * kCellStrideX + cell(y, offset_) * kCellStrideY + cell(z, kHeightOffset_m);
+    return cell(x, offset_) * kCellStrideX + cell(y, offset_) * kCellStrideY + layer(z);
   }
   /// Squared distances from a position to the 9 cell stacks around it, in the order of NeighbourWalk [m2]; slightly too
   /// small, so that rounding never excludes a stack.
@@ -58,11 +58,19 @@ class CellKeys {
   }
 
  private:
-  static constexpr double kHeightOffset_m = kMaxHeight_m + 4.0;
+  /// A multiple of the tile size, so that the lowest layer is not below 0.
+  static constexpr double kHeightOffset_m = kMaxHeight_m + 16.0;
+  static_assert(kHeightOffset_m / kTileSize_m == static_cast<std::int64_t>(kHeightOffset_m / kTileSize_m));
   std::uint64_t cell(double value_m, double offset_m) const {
     return static_cast<std::uint64_t>((value_m + offset_m) * per_m_);
   }
+  std::uint64_t layer(double height_m) const {
+    return static_cast<std::uint64_t>((height_m + kHeightOffset_m) * layers_per_m_);
+  }
   double per_m_, offset_;
+  /// A whole number of layers is as high as a tile is wide, so that another origin of the grid, which differs by whole
+  /// tiles, leaves the points of each layer together.
+  double layers_per_m_;
 };
 
 /// Appends sentinel keys larger than any cell's: the walk reads a few keys past the end.

@@ -9,7 +9,7 @@
 #include "base/mixed_bits.hpp"
 #include "base/radix_order.hpp"
 #include "cluxel/error.hpp"
-#include "perception/clustering/fast_floor.hpp"
+#include "perception/clustering/local_steps.hpp"
 
 namespace cluxel::perception {
 namespace {
@@ -143,7 +143,7 @@ Eigen::Vector3f relativeTo(const Eigen::Vector3d& corner, const Eigen::Vector3d&
     return static_cast<float>(static_cast<double>(std::min(fastFloor(value_m / kLocalStep_m), kLastStep)) *
                               kLocalStep_m);
   };
-  return {rounded(p.x()), rounded(p.y()), static_cast<float>(p.z())};
+  return {rounded(p.x()), rounded(p.y()), toHeightStep(p.z())};
 }
 
 /// Whether tileOf() gives the tile with this corner. Corners in the grid and the tile size are exact.

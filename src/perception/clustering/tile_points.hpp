@@ -16,9 +16,6 @@
 
 namespace cluxel::perception {
 
-/// Local x and y are rounded to this step [m]: then they and their shifts to a neighbouring tile are exact floats, and
-/// a difference is the same number in either tile's frame.
-inline constexpr double kLocalStep_m = 1.0 / 262144.0;
 using scan::kMaxHeight_m;
 
 struct ThinParams {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "perception/clustering/local_steps.hpp"
 #include "perception/features/ground_window.hpp"
 #include "perception/tile_bytes.hpp"
 
@@ -72,7 +73,7 @@ GroundTile groundOf(const Ring<CluxelTile>& ring, const GroundParams& params) {
   for (int y = 0; y < kStacksPerTile; ++y)
     for (int x = 0; x < kStacksPerTile; ++x) {
       const std::size_t cell = window.at(kStacksPerTile + x, kStacksPerTile + y);
-      tile.height.push_back(height[cell]);
+      tile.height.push_back(toHeightStep(height[cell]));
       tile.source.push_back(window.knows(cell) ? GroundSource::Measured : GroundSource::Filled);
     }
   return tile;
