@@ -5,14 +5,14 @@ import { execFileSync } from 'node:child_process';
 import { join } from 'node:path';
 import { test } from 'node:test';
 import { ask, askNamed } from './browser.mjs';
-import { pageOfEachTest } from './open_pages.mjs';
+import { pageOfAllTests } from './open_pages.mjs';
 
 const folder = process.env.CLUXEL_PAGES, program = process.env.CLUXEL_PROGRAM;
 const map = join(folder, 'campus.clx'), html = join(folder, 'campus.html');
 const GRAPH = 'https://w3id.org/cluxel/graph/', GEOF = 'http://www.opengis.net/def/function/geosparql/';
 const PREFIXES = `PREFIX clx: <https://w3id.org/cluxel/ontology#> PREFIX geo: <http://www.opengis.net/ont/geosparql#>
   PREFIX geof: <${GEOF}> PREFIX g: <${GRAPH}>\n`;
-const open = pageOfEachTest(html);
+const open = pageOfAllTests(html);
 
 /** What the page's engine answers, or the fault that it tells. */
 const pageAnswer = (text) => open.page.evaluate(

@@ -8,13 +8,13 @@ import { test } from 'node:test';
 import {
   answered, ask, askNamed, coveredPixels, drawn, editorText, placeOf, seenWithoutGreenCones, settled, states,
 } from './browser.mjs';
-import { pageOfEachTest } from './open_pages.mjs';
+import { pageOfAllTests } from './open_pages.mjs';
 
 const folder = process.env.CLUXEL_PAGES, program = process.env.CLUXEL_PROGRAM;
 const map = join(folder, 'campus.clx'), html = join(folder, 'campus.html');
 const cluxel = (...args) => execFileSync(program, args, { encoding: 'utf8', maxBuffer: 1e9 });
 const questions = JSON.parse(cluxel('tasks', '--json')).filter((task) => task.file);
-const open = pageOfEachTest(html);
+const open = pageOfAllTests(html);
 
 const firstRow = '.answer tbody tr.live:first-child';
 const cardTitle = (page) => page.textContent('.card h2');
@@ -158,6 +158,7 @@ test('sliders cut heights and scans', async () => {
 });
 
 test('the card shows the points of its object alone', async () => {
+  await open.again();
   await askNamed(open.page, 'trees.rq');
   await open.page.click(firstRow);
   // Whoever asks first makes the context, and Chromium warns of one that was not made to be read.

@@ -6,13 +6,13 @@ import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { test } from 'node:test';
 import { askNamed, openPage, settled, states, writeText } from './browser.mjs';
-import { pageOfEachTest } from './open_pages.mjs';
+import { pageOfAllTests } from './open_pages.mjs';
 
 const folder = process.env.CLUXEL_PAGES, program = process.env.CLUXEL_PROGRAM;
 const map = join(folder, 'visits.clx'), html = join(folder, 'visits.html');
 const cluxel = (...args) => execFileSync(program, args, { encoding: 'utf8', maxBuffer: 1e9 });
 const changes = JSON.parse(cluxel('changes', map, '--json'));
-const open = pageOfEachTest(html);
+const open = pageOfAllTests(html);
 
 const state = (page, name) => page.evaluate((key) => {
   const value = window.cluxelPage.store.state[key];
@@ -89,6 +89,7 @@ test('the card of a thing that is gone says so', async () => {
 });
 
 test('a fault takes the colours of the visit before away', async () => {
+  await open.again();  // its changes stay damaged
   const { page } = open;
   await page.click('#tab-visits');
   await toVisit(page, 1);

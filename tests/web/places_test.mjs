@@ -6,7 +6,7 @@ import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { test } from 'node:test';
 import { ask, drawn, seenWithoutGreenCones, settled } from './browser.mjs';
-import { pageOfEachTest } from './open_pages.mjs';
+import { pageOfAllTests } from './open_pages.mjs';
 
 const folder = process.env.CLUXEL_PAGES, program = process.env.CLUXEL_PROGRAM;
 const map = join(folder, 'campus.clx'), html = join(folder, 'campus.html');
@@ -14,7 +14,7 @@ const cluxel = (...args) => execFileSync(program, args, { encoding: 'utf8', maxB
 const rowsOf = (text) => JSON.parse(cluxel('query', map, '-e', text, '--format', 'json')).results.bindings
   .map((row) => Object.fromEntries(Object.entries(row).map(([name, term]) => [name, term.value])));
 const CLX = 'https://w3id.org/cluxel/ontology#';
-const open = pageOfEachTest(html);
+const open = pageOfAllTests(html);
 
 const selectedPlace = (page) => page.evaluate(() => window.cluxelPage.store.state.place?.iri ?? null);
 
@@ -73,6 +73,7 @@ test('a way is drawn along its line in the colour of its kind, a little above th
 });
 
 test('a click on a line selects its place, whose card tells measures and rule', async () => {
+  await open.again();  // the kinds that it hides stay hidden
   const { page } = open;
   await page.keyboard.press('t');
   await showPlaces(page);

@@ -6,12 +6,12 @@ import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { test } from 'node:test';
 import { askNamed, states, writeText } from './browser.mjs';
-import { pageOfEachTest } from './open_pages.mjs';
+import { pageOfAllTests } from './open_pages.mjs';
 
 const folder = process.env.CLUXEL_PAGES, program = process.env.CLUXEL_PROGRAM, map = join(folder, 'served.clx');
 const page_address = `${process.env.CLUXEL_SERVICE.trim()}page`, token = readFileSync(join(folder, 'token'), 'utf8').trim();
 const cluxel = (...args) => execFileSync(program, args, { encoding: 'utf8', maxBuffer: 1e9 });
-const open = pageOfEachTest(page_address);
+const open = pageOfAllTests(page_address);
 
 async function askTask(page, name, values) {
   await page.click('#tab-tasks');

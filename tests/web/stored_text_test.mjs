@@ -6,10 +6,10 @@ import { execFileSync } from 'node:child_process';
 import { join } from 'node:path';
 import { test } from 'node:test';
 import { ask, openPage } from './browser.mjs';
-import { pageOfEachTest } from './open_pages.mjs';
+import { pageOfAllTests } from './open_pages.mjs';
 
 const folder = process.env.CLUXEL_PAGES, program = process.env.CLUXEL_PROGRAM, map = join(folder, 'visits.clx');
-const open = pageOfEachTest(join(folder, 'visits.html'));
+const open = pageOfAllTests(join(folder, 'visits.html'));
 const pageAnswer = (text) => open.page.evaluate((asked) => window.cluxelPage.engine.ask(asked), text);
 
 async function pageRows(text) {
