@@ -3,13 +3,14 @@
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { test } from 'node:test';
+import { afterEach, test } from 'node:test';
 import { writeText } from './browser.mjs';
-import { pageOfEachTest } from './open_pages.mjs';
+import { pageOfAllTests } from './open_pages.mjs';
 
 const page_address = `${process.env.CLUXEL_SERVICE.trim()}page`;
 const token = readFileSync(join(process.env.CLUXEL_PAGES, 'token'), 'utf8').trim();
-const open = pageOfEachTest(page_address, { expected: /status of 503/ });
+const open = pageOfAllTests(page_address, { expected: /status of 503/ });
+afterEach(() => open.page.unrouteAll({ behavior: 'ignoreErrors' }));
 
 /** Holds the first request to `address` back until `release` is called; then it is answered by `reply`. */
 async function heldBack(page, address, reply) {

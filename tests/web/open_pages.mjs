@@ -50,8 +50,8 @@ export function pageOfAllTests(address, { expected = /^$/ } = {}) {
     await begin(address);
     shared = await openPage(address);
     await shared.page.evaluate(() => {
-      const { store } = window.cluxelPage;
-      window.asOpened = { state: { ...store.state }, details: new Map([...document.querySelectorAll('details')].map((one) => [one, one.open])) };
+      const { store, viewer } = window.cluxelPage;
+      window.asOpened = { state: { ...store.state }, view: viewer.camera.matrixWorld.toArray().join(), details: new Map([...document.querySelectorAll('details')].map((one) => [one, one.open])) };
     });
   });
   after(stopBrowser);
@@ -71,7 +71,7 @@ export function pageOfAllTests(address, { expected = /^$/ } = {}) {
 async function putBack(page) {
   await page.mouse.move(0, 0);
   const different = await page.evaluate(() => {
-    const { store, stage } = window.cluxelPage, { state, details } = window.asOpened;
+    const { store, stage, viewer } = window.cluxelPage, { state, view, details } = window.asOpened;
     document.querySelector('dialog[open]')?.close();
     document.activeElement?.blur();
     const buttons = [...document.querySelectorAll('.panel button')], press = (text) => buttons.find((one) => one.textContent === text && !one.disabled)?.click();
@@ -86,7 +86,7 @@ async function putBack(page) {
     for (const [key, value] of Object.entries(state)) store.set(key, value);
     document.querySelector('#tab-questions').click();
     for (const [one, isOpen] of details) one.open = isOpen;
-    stage.home();
+    if (viewer.camera.matrixWorld.toArray().join() !== view) stage.home();  // which draws all points anew
     history.replaceState(null, '', '#');
     return Object.keys(state).filter((key) => store.state[key] !== state[key]);
   });
