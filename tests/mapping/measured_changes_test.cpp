@@ -165,17 +165,22 @@ class MeasuredChanges : public testing::TestWithParam<Sensor> {
   }
   std::size_t below(std::size_t end) { return static_cast<std::size_t>(random_() % end); }
   static int rounds() { return isLong() ? 20 : 1; }
+  /// Numbers of threads to compute with; long tests compare them.
+  std::vector<unsigned> threadCounts() {
+    if (isLong()) return {1, 2};
+    return {1 + static_cast<unsigned>(below(2))};
+  }
 
   /// The window may be as large as the map.
   static ChangeParams paramsOf(unsigned threads) { return {.threads = threads, .max_window_share = 2}; }
 
-  /// Lets `operation` change `map` with one thread, and what the map was before with two.
+  /// Lets `operation` change `map`, with each number of threads what the map was before.
   template <typename Operation>
   void expectChanged(const fs::path& map, const std::string& expected, const Operation& operation) {
     const fs::path before = folder_.path() / "before.clx";
     fs::copy_file(map, before, fs::copy_options::overwrite_existing);
-    for (const unsigned threads : {1U, 2U}) {
-      if (threads == 2) fs::copy_file(before, map, fs::copy_options::overwrite_existing);
+    for (const unsigned threads : threadCounts()) {
+      fs::copy_file(before, map, fs::copy_options::overwrite_existing);
       local_commits_ += operation(paramsOf(threads)).local_commits;
       EXPECT_TRUE(canonicalText(map) == expected) << threads << " threads";
     }
@@ -195,10 +200,10 @@ class MeasuredChanges : public testing::TestWithParam<Sensor> {
 TEST_P(MeasuredChanges, AnyOrderAndOneByOne) {
   for (int round = 0; round < rounds(); ++round) {
     const ScanSet scans = scans_->only(shuffled());
-    for (const unsigned threads : {1U, 2U})
+    for (const unsigned threads : threadCounts())
       EXPECT_TRUE(canonicalText(build(scans, "map.clx", {.threads = threads, .batch_points = 1})) == expected_);
     const std::vector<std::size_t> order = shuffled();
-    for (const unsigned threads : {1U, 2U}) {
+    for (const unsigned threads : threadCounts()) {
       const fs::path map = build(scans_->only({order.front()}), "grown.clx");
       for (std::size_t i = 1; i < order.size(); ++i)
         local_commits_ += extendMap(map, scans_->only({order[i]}), paramsOf(threads), silence()).local_commits;
@@ -219,7 +224,7 @@ TEST_P(MeasuredChanges, MergesOfAnySplitInAnyOrder) {
     for (std::size_t i = 0; i < parts; ++i)
       maps.push_back({build(scans_->only(split[i]), "part" + std::to_string(i) + ".clx")});
     std::shuffle(maps.begin(), maps.end(), random_);
-    for (const unsigned threads : {1U, 2U}) {
+    for (const unsigned threads : threadCounts()) {
       MergeParams merge;
       merge.change = paramsOf(threads);
       merge.force = true;

@@ -2,7 +2,6 @@
 // Changes that are computed around what changed lead to the map, and to the stored state, of a build from nothing.
 #include <gmock/gmock.h>
 
-#include <cstdlib>
 #include <functional>
 #include <limits>
 #include <map>
@@ -10,6 +9,7 @@
 #include "mapping/change/map_update.hpp"
 #include "mapping/change/statement_change.hpp"
 #include "mapping/far_rays.hpp"
+#include "mapping/long_tests.hpp"
 #include "mapping/street_changes.hpp"
 #include "rdf/map_iris.hpp"
 #include "sparql/query_engine.hpp"
@@ -24,9 +24,8 @@ namespace fs = std::filesystem;
 /// does not, so that a quarter must.
 void checkSequences(std::uint64_t first_campus, unsigned steps,
                     const std::function<std::string(StreetChanges&, unsigned)>& step, How how = How::Around) {
-  const bool is_long = std::getenv("CLUXEL_LONG_TESTS") != nullptr;
-  const unsigned sequences = is_long ? 12 : 2;
-  if (is_long) steps = 3 * steps + 2;
+  const unsigned sequences = isLong() ? 12 : 1;
+  if (isLong()) steps = 3 * steps + 2;
   std::size_t computed = 0;
   for (unsigned seed = 1; seed <= sequences; ++seed) {
     const StreetScans scans(first_campus + seed);
@@ -97,7 +96,7 @@ TEST(WindowUpdate, GrowsInBandsAndStripsAsABuildDoes) {
 
 TEST(WindowUpdate, TellsTheSameObjectsInStrips) {
   const StreetScans scans(3, 65);
-  for (unsigned seed = 1; seed <= 6; ++seed) {
+  for (unsigned seed = 1; seed <= (isLong() ? 6U : 2U); ++seed) {
     const ScratchFolder folder;
     std::mt19937 random(seed);
     std::map<std::size_t, int> there, fresh;

@@ -82,11 +82,8 @@ std::string withoutFolder(std::string text, const MapInputs& inputs) {
 /// A map of more tiles than an explanation reads.
 class ExplanationOfALongMap : public ::testing::Test {
  protected:
-  void SetUp() override { build({.seed = 5, .stops = 12, .size_m = 150, .points_per_stop = 7000, .max_range_m = 16}); }
-
-  void build(const CampusParams& params) {
-    map.reset();
-    std::filesystem::remove(folder.path() / "street.clx");
+  void build(const CampusParams& params = {
+                 .seed = 5, .stops = 12, .size_m = 150, .points_per_stop = 7000, .max_range_m = 16}) {
     const SmallCampus campus(params);
     buildMap(scansOf(campus.files()), shippedInputs(), folder.path() / "street.clx", {.threads = 2}, silence());
     map.emplace(folder.path() / "street.clx");
@@ -103,6 +100,7 @@ class ExplanationOfALongMap : public ::testing::Test {
 };
 
 TEST_F(ExplanationOfALongMap, OfAnObjectThroughoutTheMapReadsSomeTilesToo) {
+  build();
   const auto& objects = map->objects();
   const auto ground =
       std::find_if(objects.begin(), objects.end(), [](const SemanticObject& object) { return object.is_class_wide; });
@@ -126,6 +124,7 @@ TEST_F(ExplanationOfALongMap, OfAnObjectThroughoutTheMapReadsSomeTilesToo) {
 }
 
 TEST_F(ExplanationOfALongMap, ReadsSomeTilesAndSaysWhatTheWholeMapSays) {
+  build();
   std::size_t in_part = 0;
   for (std::size_t i = 0; i < map->objects().size(); i += 7) {
     const SemanticObject& object = map->objects()[i];
@@ -158,7 +157,7 @@ bool isToldInPart(const MapReader& map, const SemanticObject& object, const Rule
 
 /// Why a thing is of no other class is told from some tiles, too.
 TEST_F(ExplanationOfALongMap, WhyNotReadsSomeTilesAndSaysWhatTheWholeMapSays) {
-  build({.seed = 5, .stops = 30, .size_m = 400, .points_per_stop = 5000, .max_range_m = 16, .stop_distance_m = 20});
+  build({.seed = 5, .stops = 20, .size_m = 270, .points_per_stop = 5000, .max_range_m = 16, .stop_distance_m = 20});
   const ReasoningResult made = reason(map->scene(), rules);
   constexpr std::array<const char*, 3> kClasses{"StreetLamp", "Building", "SmallObject"};
   std::size_t in_part = 0, number = 0;
