@@ -54,11 +54,19 @@ class ComputedTiles : public ProgressSink {
 enum class Times { Known, Unknown };
 enum class Rays { Short, Long /* one of each scan ends beyond the other end of the street */ };
 
+/// A campus once a process: to generate one takes as long as to map it.
+const SmallCampus& campusAlong(std::uint32_t seed, double stops) {
+  static std::map<std::pair<std::uint32_t, double>, SmallCampus> made;
+  const CampusParams params{
+      .seed = seed, .stops = stops, .size_m = 25.0 * stops, .points_per_stop = 7000, .max_range_m = 16};
+  return made.try_emplace({seed, stops}, params).first->second;
+}
+
 /// Scans along a street, from west to east.
 class Street {
  public:
   explicit Street(std::uint32_t seed = 8, Times times = Times::Known, double stops = 12, Rays rays = Rays::Short)
-      : campus_({.seed = seed, .stops = stops, .size_m = 25.0 * stops, .points_per_stop = 7000, .max_range_m = 16}) {
+      : campus_(campusAlong(seed, stops)) {
     const ScanSet all = scansOf(campus_.files());
     std::vector<std::size_t> order(all.size());
     std::iota(order.begin(), order.end(), 0);
@@ -107,7 +115,7 @@ class Street {
   fs::path merged() const { return folder_.path() / "merged"; }
 
  private:
-  SmallCampus campus_;
+  const SmallCampus& campus_;
   ScratchFolder folder_;
   std::vector<fs::path> manifests_;
 };
