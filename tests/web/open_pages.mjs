@@ -36,7 +36,7 @@ export function pageOfEachTest(address, { expected = /^$/ } = {}) {
 
 /**
  * One page for all tests of a file, put back before each: to open one takes seconds of both cores. For tests that look
- * and ask; what a page cannot take back, as an edited rule file, needs `again()`, whose page is that test's alone.
+ * and ask; what cannot be put back, as hidden kinds of places, needs `again()`, whose page is that test's alone.
  */
 export function pageOfAllTests(address, { expected = /^$/ } = {}) {
   let shared;
@@ -60,9 +60,11 @@ export function pageOfAllTests(address, { expected = /^$/ } = {}) {
     await putBack(shared.page);
   });
   afterEach(async () => {
-    if (open.page !== shared.page) await open.close();
-    checkFaults(open, expected);
+    const isShared = open.page === shared.page, before_again = isShared ? [] : shared.faults;
+    if (!isShared) await open.close();
+    const faults = [...open.faults, ...before_again];
     shared.faults.length = 0;
+    checkFaults({ faults }, expected);
   });
   return open;
 }
