@@ -18,19 +18,49 @@ void appendNumber(std::uint64_t value, std::string& bytes) {
   bytes.push_back(static_cast<char>(value));
 }
 
-std::vector<rdf::QuadIds> currentQuads(const rdf::QuadReader& reader) {
+/// Calls `visit` for all quads but history.
+template <typename Visit>
+void forEachCurrent(const rdf::QuadReader& reader, const Visit& visit) {
   const auto history = reader.idOf(Term::iri(rdf::vocabulary::kGraphHistory));
-  std::vector<rdf::QuadIds> quads;
   rdf::QuadCursor cursor = reader.scan({}, rdf::QuadOrder::Gspo);
   for (rdf::QuadIds quad; cursor.next(quad);)
-    if (!history || quad.g != *history) quads.push_back(quad);
-  return quads;
+    if (!history || quad.g != *history) visit(quad);
 }
 
-/// Removes the quads whose subject is a primitive; returns their number.
-std::uint64_t removePrimitives(const rdf::QuadReader& reader, std::vector<rdf::QuadIds>& quads) {
-  const std::string prefix = rdf::mapIri("primitive", "");
-  return std::erase_if(quads, [&](const rdf::QuadIds& quad) { return reader.viewOf(quad.s).text.starts_with(prefix); });
+/// Tells the quads about primitives. Those of a subject mostly follow each other.
+class PrimitiveSubjects {
+ public:
+  explicit PrimitiveSubjects(const rdf::QuadReader& reader) : reader_(reader), prefix_(rdf::mapIri("primitive", "")) {}
+
+  bool hold(rdf::TermId subject) {
+    if (subject != last_) is_primitive_ = reader_.viewOf(subject).text.starts_with(prefix_);
+    last_ = subject;
+    return is_primitive_;
+  }
+
+ private:
+  const rdf::QuadReader& reader_;
+  std::string prefix_;
+  rdf::TermId last_ = rdf::kNoTerm;
+  bool is_primitive_ = false;
+};
+
+struct ShownQuads {
+  std::vector<rdf::QuadIds> quads;
+  std::uint64_t left_out = 0;
+};
+
+/// Quads that are left out are never held: they grow with the map.
+ShownQuads shownQuads(const rdf::QuadReader& reader, std::uint64_t max_quads) {
+  std::uint64_t count = 0;
+  forEachCurrent(reader, [&count](const rdf::QuadIds&) { ++count; });
+  ShownQuads shown;
+  PrimitiveSubjects primitives(reader);
+  forEachCurrent(reader, [&](const rdf::QuadIds& quad) {
+    if (count <= max_quads || !primitives.hold(quad.s)) shown.quads.push_back(quad);
+  });
+  shown.left_out = count - shown.quads.size();
+  return shown;
 }
 
 /// The numbers of the terms that occur, by id, and the terms' lines.
@@ -65,9 +95,9 @@ class TermNumbers {
 }  // namespace
 
 PackedQuads packedQuadsOf(const rdf::QuadReader& reader, std::uint64_t max_quads) {
-  std::vector<rdf::QuadIds> quads = currentQuads(reader);
+  const auto [quads, left_out] = shownQuads(reader, max_quads);
   PackedQuads packed;
-  if (quads.size() > max_quads) packed.left_out = removePrimitives(reader, quads);
+  packed.left_out = left_out;
   TermNumbers number(reader, quads);
   std::vector<std::array<std::uint32_t, 4>> rows;
   rows.reserve(quads.size());

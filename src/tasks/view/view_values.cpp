@@ -7,7 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "mapping/facts/object_geometry.hpp"
+#include "mapping/layers/stored_layers.hpp"
+#include "mapping/regions/object_extents.hpp"
 #include "rdf/file/check/commit_name.hpp"
 #include "rdf/map_iris.hpp"
 #include "rdf/ontology/ontology.hpp"
@@ -104,8 +105,9 @@ ViewJson propertiesJson(const rdf::OntologyView& ontology) {
 
 ViewJson classesJson(const mapping::MapReader& map) {
   std::set<std::string> whole;
-  for (const rules::SemanticObject& object : map.objects())
-    if (object.id == rules::idOfClassWide(object.class_iri)) whole.insert(object.class_iri);
+  for (std::size_t i = 0; i < map.objectIds().size(); ++i)
+    if (const std::string& iri = map.objectClasses()[i]; map.objectIds()[i] == rules::idOfClassWide(iri))
+      whole.insert(iri);
   const rdf::OntologyView ontology = ontologyViewOf(map.quads());
   ViewJson all = ViewJson::array();
   for (const rdf::OntologyClass& known : ontology.classes) {
@@ -127,13 +129,18 @@ ViewJson boxJson(const perception::UprightBox& box) {
   return json;
 }
 
-ViewJson partsJson(const rules::SemanticObject& object, const perception::SceneCluxels& cluxels) {
-  ViewJson parts = ViewJson::array();
-  for (const rules::ObjectPart& part : object.parts) {
-    if (part.part_class == object.class_iri || part.cluxels.empty()) continue;
-    parts.push_back({{"class", part.part_class}, {"box", boxJson(mapping::geometryOf(cluxels, part.cluxels).box)}});
-  }
-  return parts;
+ViewJson partsJson(const std::string& class_iri, const std::vector<mapping::PartExtents>& parts) {
+  ViewJson all = ViewJson::array();
+  for (const mapping::PartExtents& part : parts)
+    if (part.part_class != class_iri)
+      all.push_back({{"class", part.part_class}, {"box", boxJson(mapping::geometryOf(part.sums).box)}});
+  return all;
+}
+
+mapping::ObjectGeometry geometryOf(const std::vector<mapping::PartExtents>& parts) {
+  mapping::ExtentSums sums;
+  for (const mapping::PartExtents& part : parts) sums.add(part.sums);
+  return mapping::geometryOf(std::move(sums));
 }
 
 }  // namespace
@@ -176,8 +183,8 @@ std::string visitChangesJson(const mapping::MapReader& map, unsigned threads) {
 
 std::string lineageJson(const mapping::MapReader& map) {
   std::map<std::string, std::string> number_of;
-  for (std::size_t i = 0; i < map.objects().size(); ++i)
-    number_of[rdf::iriOfObject(map.objects()[i].id)] = std::to_string(i);
+  for (std::size_t i = 0; i < map.objectIds().size(); ++i)
+    number_of[rdf::iriOfObject(map.objectIds()[i])] = std::to_string(i);
   const std::string query = "PREFIX prov: <http://www.w3.org/ns/prov#> PREFIX clx: <" +
                             std::string(rdf::vocabulary::kClx) + "> SELECT ?object ?from ?operation ?time { GRAPH <" +
                             std::string(rdf::vocabulary::kGraphHistory) +
@@ -197,13 +204,14 @@ std::string lineageJson(const mapping::MapReader& map) {
 }
 
 std::string objectValuesJson(const mapping::MapReader& map) {
-  const perception::SceneCluxels& cluxels = map.scene().cluxels;
+  const std::vector<std::vector<mapping::PartExtents>> extents = mapping::extentsOfObjects(map);
   ViewJson json{{"classes", classesJson(map)}};
   for (const char* column : {"id", "class", "confidence", "rule", "box", "bottom", "top", "points", "parts"})
     json[column] = ViewJson::array();
-  for (const rules::SemanticObject& object : map.objects()) {
-    const mapping::ObjectGeometry geometry = mapping::geometryOf(cluxels, mapping::cluxelsOf(object));
-    json["id"].push_back(object.id.hex());
+  mapping::forEachRecord(map.transaction(), [&](const ContentHash& id, const mapping::ObjectRecord& object) {
+    const std::vector<mapping::PartExtents>& parts = extents.at(json["id"].size());
+    const mapping::ObjectGeometry geometry = geometryOf(parts);
+    json["id"].push_back(id.hex());
     json["class"].push_back(object.class_iri);
     json["confidence"].push_back(toMillimetre(object.confidence));
     json["rule"].push_back(object.rule_id);
@@ -211,8 +219,8 @@ std::string objectValuesJson(const mapping::MapReader& map) {
     json["bottom"].push_back(toMillimetre(geometry.bottom_m));
     json["top"].push_back(toMillimetre(geometry.top_m));
     json["points"].push_back(geometry.point_count);
-    json["parts"].push_back(partsJson(object, cluxels));
-  }
+    json["parts"].push_back(partsJson(object.class_iri, parts));
+  });
   return json.dump(-1, ' ', false, ViewJson::error_handler_t::replace);
 }
 
