@@ -17,7 +17,6 @@ namespace cluxel::mapping {
 
 namespace {
 
-constexpr double kMaxPartShare = 0.6;   ///< of the map's tiles
 constexpr std::size_t kManyTiles = 25;  ///< of a near object: chosen, about as many as one more ring has
 
 using PartsByName = std::map<std::string, rules::ObjectPart>;
@@ -56,12 +55,12 @@ std::vector<rules::SemanticObject> objectsIn(const rdf::ReadTransaction& transac
 }  // namespace
 
 std::optional<MapPart> partOfMap(const rdf::ReadTransaction& transaction, TileStages& stages,
-                                 const perception::TileSet& tiles, double reach_m) {
+                                 const perception::TileSet& tiles, double reach_m, double max_share) {
   if (tiles.empty()) return std::nullopt;
   const OutputChanges none;
   FormerSummaries former(none);
   std::optional<MapWindow> window = windowAround(transaction, stages, none, former, storedTiles(transaction), tiles, 0,
-                                                 storedClouds(transaction), kMaxPartShare);
+                                                 storedClouds(transaction), max_share);
   if (!window) return std::nullopt;
   MapPart part;
   part.objects = objectsIn(transaction, *window);

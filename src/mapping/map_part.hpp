@@ -22,10 +22,13 @@ struct MapPart {
   std::vector<rules::SemanticObject> objects;  ///< as far as they lie in the part, sorted by id
 };
 
-/// The part in those of `tiles` that the map has. Absent when there are none, or when they are most of the map, which
-/// is then quicker to read as a whole. `reach_m` tells what is open. Cost: some milliseconds a tile.
+/// A larger share of a map's tiles is quicker to read as a whole.
+inline constexpr double kMaxPartShare = 0.6;
+
+/// The part in those of `tiles` that the map has. Absent when there are none, or when they are more than `max_share` of
+/// its tiles. `reach_m` tells what is open. Cost: some milliseconds a tile.
 std::optional<MapPart> partOfMap(const rdf::ReadTransaction& transaction, TileStages& stages,
-                                 const perception::TileSet& tiles, double reach_m);
+                                 const perception::TileSet& tiles, double reach_m, double max_share = kMaxPartShare);
 
 /// How large the part around a thing is to be.
 struct PartSize {

@@ -21,6 +21,7 @@
 #include "rules/explain/path_tree.hpp"
 #include "rules/explain/why_not.hpp"
 #include "tasks/derived_classes.hpp"
+#include "tasks/explanation_names.hpp"
 #include "tasks/named_class.hpp"
 #include "tasks/stated_of_things.hpp"
 #include "tasks/thing_names.hpp"
@@ -28,27 +29,6 @@
 namespace cluxel::tasks {
 
 namespace {
-
-/// Names rule files relative to the folder of the first: the map holds the paths of the machine that built it.
-void shortenFiles(rules::Decision& decision, const mapping::MapInputs& inputs) {
-  if (inputs.rules.empty()) return;
-  const std::filesystem::path folder = std::filesystem::path(inputs.rules.front().name).parent_path();
-  const auto shorten = [&](std::string& name) { name = mapping::nameWithin(folder, name).string(); };
-  for (rules::DecisionStep& step : decision.path) shorten(step.file);
-  for (rules::EvidenceStep& step : decision.evidence) shorten(step.file);
-}
-
-void shortenFiles(rules::Explanation& explanation, const mapping::MapInputs& inputs) {
-  for (rules::ExplainedDecision& explained : explanation.decisions) shortenFiles(explained.decision, inputs);
-}
-
-/// Part of a map: with the objects as the rules made them.
-mapping::MapPart byRules(const mapping::MapReader& map, mapping::MapPart part) {
-  for (const mapping::OverruledObject& overruled : map.overruled())
-    for (rules::SemanticObject& object : part.objects)
-      if (overruled.now == object.id) object.rule_id = overruled.by_rules.rule_id;
-  return part;
-}
 
 constexpr double kAll = std::numeric_limits<double>::infinity();
 
@@ -70,7 +50,7 @@ std::optional<mapping::MapPart> partAround(const mapping::MapReader& map, const 
   auto part = what.tile        ? map.partAroundTile(*what.tile, size)
               : what.primitive ? map.partAroundPrimitive(*what.primitive, size)
                                : map.partAroundObject(*what.object, size);
-  return part ? std::optional(byRules(map, *std::move(part))) : std::nullopt;
+  return part ? std::optional(withObjectsByRules(map, *std::move(part))) : std::nullopt;
 }
 
 std::vector<perception::PrimitiveIndex> primitivesIn(const perception::Scene& scene,
@@ -188,7 +168,7 @@ std::optional<WhyNotOfThing> whyNotAround(const mapping::MapReader& map, const r
   for (const mapping::LayersAround& around : {mapping::LayersAround{4, 0}, {7, 2}, {13, 4}}) {
     auto part = map.partOfLayers(place, rules, *reach_m, around);
     if (!part) return std::nullopt;
-    part = byRules(map, *std::move(part));
+    part = withObjectsByRules(map, *std::move(part));
     const std::vector<perception::PrimitiveIndex> primitives = primitivesIn(part->scene, part->objects, what);
     std::vector<char> is_dirty(part->scene.primitives.size(), 0);
     for (const perception::PrimitiveIndex primitive : primitives) is_dirty[primitive] = 1;
@@ -286,6 +266,14 @@ ExplanationTexts explainThing(const mapping::MapReader& map, const std::string& 
 std::string explainThing(const mapping::MapReader& map, const std::string& name, bool as_json) {
   ExplanationTexts texts = explainThing(map, name);
   return as_json ? std::move(texts.json) : std::move(texts.text);
+}
+
+std::string explainObject(const mapping::MapReader& map, std::size_t number) {
+  const mapping::MapInputs inputs = map.inputs();
+  const rules::RuleSet rules = mapping::parseInputs(inputs).rules;
+  Explained explained = explanationOf(map, {map.objectIds().at(number), std::nullopt, number}, rules);
+  shortenFiles(explained.explanation, inputs);
+  return nlohmann::ordered_json::parse(jsonOf(explained.explanation, rules, explained.sceneOf(map))).dump();
 }
 
 std::vector<std::string> explainObjects(const mapping::MapReader& map) {

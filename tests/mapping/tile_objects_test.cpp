@@ -6,6 +6,7 @@
 
 #include "mapping/build/tile_stages.hpp"
 #include "mapping/facts/object_geometry.hpp"
+#include "mapping/regions/object_extents.hpp"
 #include "mapping/street_map.hpp"
 
 namespace cluxel::mapping {
@@ -25,6 +26,34 @@ TEST_F(TileObjectsTest, TopsAreThoseOfTheScene) {
   ASSERT_EQ(tops.size(), map->objects().size());
   for (std::size_t i = 0; i < tops.size(); ++i)
     EXPECT_EQ(tops[i], geometryOf(map->scene().cluxels, cluxelsOf(map->objects()[i])).top_m) << i;
+}
+
+void expectSame(const ObjectGeometry& found, const ObjectGeometry& expected) {
+  EXPECT_EQ(found.box.center, expected.box.center);
+  EXPECT_EQ(found.box.size, expected.box.size);
+  EXPECT_EQ(found.box.yaw_rad, expected.box.yaw_rad);
+  EXPECT_EQ(found.bottom_m, expected.bottom_m);
+  EXPECT_EQ(found.top_m, expected.top_m);
+  EXPECT_EQ(found.point_count, expected.point_count);
+}
+
+TEST_F(TileObjectsTest, ExtentsOfObjectsAndPartsHaveTheBitsOfTheScene) {
+  const perception::SceneCluxels& cluxels = map->scene().cluxels;
+  const auto extents = extentsOfObjects(*map);
+  ASSERT_EQ(extents.size(), map->objects().size());
+  std::size_t parts = 0;
+  for (std::size_t i = 0; i < extents.size(); ++i) {
+    const rules::SemanticObject& object = map->objects()[i];
+    ASSERT_EQ(extents[i].size(), object.parts.size()) << i;
+    ExtentSums whole;
+    for (std::size_t part = 0; part < extents[i].size(); ++part, ++parts) {
+      EXPECT_EQ(extents[i][part].part_class, object.parts[part].part_class);
+      expectSame(geometryOf(extents[i][part].sums), geometryOf(cluxels, object.parts[part].cluxels));
+      whole.add(extents[i][part].sums);
+    }
+    expectSame(geometryOf(std::move(whole)), geometryOf(cluxels, cluxelsOf(object)));
+  }
+  EXPECT_GT(parts, extents.size()) << "no object has parts";
 }
 
 TEST_F(TileObjectsTest, HeightsAreThoseOfTheScene) {

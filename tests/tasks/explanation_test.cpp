@@ -4,12 +4,15 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <array>
 
 #include <nlohmann/json.hpp>
 
 #include "cluxel/error.hpp"
 #include "mapping/asking_rules.hpp"
+#include "mapping/build/tile_stages.hpp"
+#include "mapping/clouds/scan_store.hpp"
 #include "mapping/map_part.hpp"
 #include "rdf/map_iris.hpp"
 #include "rules/decide/local_reach.hpp"
@@ -19,6 +22,7 @@
 #include "rules/language/rule_loader.hpp"
 #include "tasks/campus_map_fixture.hpp"
 #include "tasks/named_class.hpp"
+#include "tasks/object_explanations.hpp"
 #include "test_paths.hpp"
 
 namespace cluxel::tasks {
@@ -175,6 +179,54 @@ TEST_F(ExplanationOfALongMap, WhyNotReadsSomeTilesAndSaysWhatTheWholeMapSays) {
     EXPECT_TRUE(told.ends_with(withoutFolder(expected, inputs))) << told << "\nis not\n" << expected;
   }
   EXPECT_EQ(in_part, 6U);
+}
+
+std::vector<std::string> explainedWith(const MapReader& map, const ExplainedCluxels& most) {
+  std::vector<std::string> lines;
+  forEachExplanation(
+      map, [&](std::string_view line) { lines.emplace_back(line); }, most);
+  return lines;
+}
+
+TEST_F(ExplanationOfALongMap, OfAllObjectsIsTheSameRegionByRegion) {
+  const std::vector<std::string> whole = explainObjects(*map);
+  const std::size_t all = map->scene().cluxels.size();
+  EXPECT_EQ(explainedWith(*map, {all, 1}), whole) << "at once";
+  for (const std::size_t region : {std::size_t{1}, all / 20, all / 4, all})
+    EXPECT_EQ(explainedWith(*map, {0, region}), whole) << region;
+}
+
+TEST_F(ExplanationOfALongMap, APartOfTheMapExplainsOnlyWhatItDecidesAsTheMapDid) {
+  TileSet half;
+  const TileSet tiles = storedTiles(map->transaction());
+  for (const TileKey& tile : tiles)
+    if (half.size() < tiles.size() / 2) half.insert(tile);
+  TileStages stages(map->model(), inputs.params);
+  const auto part = partOfMap(map->transaction(), stages, half, 0);
+  ASSERT_TRUE(part);
+  std::vector<AskedObject> asked;
+  for (const SemanticObject& object : part->objects)
+    if (!object.is_class_wide) asked.push_back({object.id, primitivesOf(object)});
+  const auto told = explainInPart(part->scene, rules, {part->traces, part->objects}, asked);
+  ASSERT_EQ(told.size(), asked.size());
+  std::size_t known = 0;
+  for (std::size_t i = 0; i < told.size(); ++i) {
+    if (!told[i]) continue;
+    ++known;
+    const auto object = std::find_if(map->objects().begin(), map->objects().end(),
+                                     [&](const SemanticObject& one) { return one.id == asked[i].id; });
+    const auto whole = explain(map->scene(), rules, {}, *object);
+    ASSERT_TRUE(whole);
+    EXPECT_EQ(textOf(*told[i], rules, part->scene), textOf(*whole, rules, map->scene())) << asked[i].id.hex();
+  }
+  EXPECT_GE(known, 5U);
+  EXPECT_LT(known, told.size()) << "objects that the border cuts were explained";
+}
+
+TEST(Explanation, OfAllObjectsAsksTheWholeMapWhereRulesDo) {
+  const ScratchFolder folder;
+  const MapReader map(buildAskingMap(folder.path()));
+  EXPECT_EQ(explainedWith(map, {0, 1}), explainObjects(map));
 }
 
 TEST(Explanation, TakesTheNumberOfAnObjectAndSaysIt) {

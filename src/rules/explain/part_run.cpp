@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <unordered_map>
 
 #include "perception/segments/scene_part.hpp"
 
@@ -115,7 +116,71 @@ class PartSearch {
   Box box_;
 };
 
+/// Compares a run over a part with the whole run, object by object: as PartSearch::agrees(), for many objects.
+class PartComparison {
+ public:
+  PartComparison(const perception::Scene& part, const RuleSet& rules, const WholeRun& whole,
+                 const ReasoningResult& result)
+      : part_(part), traces_(whole.traces), result_(result) {
+    const std::size_t cluxels = part.cluxels.size();
+    const std::vector<const Rule*> there = rulesOfCluxels(whole.objects, rules, cluxels),
+                                   here = rulesOfCluxels(result.objects, rules, cluxels);
+    for (std::size_t c = 0; c < cluxels; ++c)
+      if (there[c] != here[c]) decided_otherwise_.emplace_back(part.cluxels.center[c].head<2>());
+    for (const SemanticObject& object : result.objects)
+      for (const perception::PrimitiveIndex primitive : primitivesOf(object)) owners_[primitive].push_back(&object);
+  }
+
+  bool agreesAbout(const std::vector<perception::PrimitiveIndex>& primitives) const {
+    Box box;
+    for (const perception::PrimitiveIndex primitive : primitives) {
+      if (!hasSameTraces(primitive)) return false;
+      box.extend(boxOf(part_.primitives[primitive]));
+    }
+    const Box checked = grown(box, kSameOwnersWithin_m);
+    return std::none_of(decided_otherwise_.begin(), decided_otherwise_.end(),
+                        [&](const Eigen::Vector2d& place) { return checked.contains(place); });
+  }
+
+ private:
+  /// Of the primitive, and of the seeds of its owners.
+  bool hasSameTraces(perception::PrimitiveIndex primitive) const {
+    const auto is_same = [this](auto i) { return result_.traces[i] == traces_[i]; };
+    const auto owners = owners_.find(primitive);
+    return is_same(primitive) &&
+           (owners == owners_.end() ||
+            std::all_of(owners->second.begin(), owners->second.end(), [&](const SemanticObject* owner) {
+              const std::vector<perception::PrimitiveIndex>& seeds = result_.decisions[owner->decision].seeds;
+              return std::all_of(seeds.begin(), seeds.end(), is_same);
+            }));
+  }
+
+  const perception::Scene& part_;
+  const std::vector<std::uint64_t>& traces_;
+  const ReasoningResult& result_;
+  std::vector<Eigen::Vector2d> decided_otherwise_;  ///< cluxels that another rule, or none, got
+  std::unordered_map<perception::PrimitiveIndex, std::vector<const SemanticObject*>> owners_;
+};
+
 }  // namespace
+
+std::vector<std::optional<Explanation>> explainInPart(const perception::Scene& part, const RuleSet& rules,
+                                                      const WholeRun& whole, const std::vector<AskedObject>& asked) {
+  std::vector<std::optional<Explanation>> explanations(asked.size());
+  if (rules.asks_map || whole.traces.size() != part.primitives.size()) return explanations;
+  ReasoningContext probing;
+  for (const AskedObject& object : asked)
+    probing.probes.insert(probing.probes.end(), object.primitives.begin(), object.primitives.end());
+  std::sort(probing.probes.begin(), probing.probes.end());
+  probing.probes.erase(std::unique(probing.probes.begin(), probing.probes.end()), probing.probes.end());
+  probing.splits = whole.splits;
+  const ReasoningResult result = reason(part, rules, probing);
+  const PartComparison comparison(part, rules, whole, result);
+  for (std::size_t i = 0; i < asked.size(); ++i)
+    if (!asked[i].primitives.empty() && comparison.agreesAbout(asked[i].primitives))
+      explanations[i] = explanationIn(result, rules, asked[i].id);
+  return explanations;
+}
 
 std::optional<PartRun> runInPart(const std::shared_ptr<const perception::Scene>& scene, const RuleSet& rules,
                                  const WholeRun& whole, const std::vector<perception::PrimitiveIndex>& primitives,

@@ -46,4 +46,16 @@ std::optional<PartRun> runInPart(const perception::Scene& scene, const RuleSet& 
                                  const std::vector<perception::PrimitiveIndex>& primitives,
                                  const TriedParts& tried = {});
 
+/// An object of the whole run, with its primitives in a part.
+struct AskedObject {
+  ContentHash id;  ///< that the rules gave to it
+  std::vector<perception::PrimitiveIndex> primitives;
+};
+
+/// Explains many objects by one run over a part of a map: all for which the part counts as it does for runInPart().
+/// Absent for the others. `whole`: of the part's primitives, and objects by the part's numbers. Cost: one run with
+/// probes at all of these primitives.
+std::vector<std::optional<Explanation>> explainInPart(const perception::Scene& part, const RuleSet& rules,
+                                                      const WholeRun& whole, const std::vector<AskedObject>& asked);
+
 }  // namespace cluxel::rules

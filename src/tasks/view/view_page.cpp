@@ -10,7 +10,7 @@
 #include "base/file_bytes.hpp"
 #include "base/free_memory.hpp"
 #include "cluxel/error.hpp"
-#include "tasks/explanation.hpp"
+#include "tasks/object_explanations.hpp"
 #include "tasks/view/packed_quads.hpp"
 #include "tasks/view/page_blocks.hpp"
 #include "tasks/view/point_tiles.hpp"
@@ -40,21 +40,24 @@ void shorten(nlohmann::ordered_json& json) {
     for (nlohmann::ordered_json& member : json) shorten(member);
 }
 
-std::string shortened(const std::string& reasons) {
+std::string shortened(std::string_view reasons) {
   auto json = nlohmann::ordered_json::parse(reasons);
   shorten(json);
   return json.dump();
 }
 
 std::uint64_t writeReasons(const mapping::MapReader& map, const ByteSink& out) {
-  const std::vector<std::string> reasons = explainObjects(map);
   std::uint64_t written = 0;
-  for (std::size_t i = 0; i < reasons.size(); i += kReasonsInBlock) {
-    std::string lines;
-    for (std::size_t k = i; k < std::min(reasons.size(), i + kReasonsInBlock); ++k)
-      lines += shortened(reasons[k]) + "\n";
-    written += writeBlock("reasons-" + std::to_string(i / kReasonsInBlock), lines, out);
-  }
+  std::size_t blocks = 0, objects = 0;
+  std::string lines;
+  const auto write = [&] {
+    written += writeBlock("reasons-" + std::to_string(blocks++), std::exchange(lines, {}), out);
+  };
+  forEachExplanation(map, [&](std::string_view reasons) {
+    lines += shortened(reasons) + "\n";
+    if (++objects % kReasonsInBlock == 0) write();
+  });
+  if (!lines.empty()) write();
   return written;
 }
 
