@@ -2,11 +2,11 @@
 // Points of scans and objects in the map frame.
 #include "api/point_query.hpp"
 
-#include <functional>
-#include <optional>
+#include <utility>
+#include <vector>
 
 #include "cluxel/error.hpp"
-#include "mapping/facts/object_geometry.hpp"
+#include "mapping/regions/answered_clouds.hpp"
 #include "rdf/map_iris.hpp"
 #include "scan/truth/primitive_label.hpp"
 #include "tasks/thing_names.hpp"
@@ -41,26 +41,22 @@ Cloud valueOf(const mapping::Cloud& stored) {
   return cloud;
 }
 
-/// Appends the points of a scan whose object number is accepted.
-void append(const mapping::MapReader& map, const mapping::Cloud& cloud,
-            const std::function<bool(std::uint32_t)>& accept, bool with_intensity, PointCloud& out) {
-  const scan::ScanPoints points = map.pointsOf(cloud.id);
-  const mapping::PointAnswers answers = map.answersFor(cloud);
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    if (!accept(answers.object[i])) continue;
-    const Eigen::Vector3d p_map = scan::toMap(cloud.T_map_sensor, {points.x[i], points.y[i], points.z[i]});
-    out.x.push_back(p_map.x());
-    out.y.push_back(p_map.y());
-    out.z.push_back(p_map.z());
-    if (with_intensity && !points.intensity.empty()) out.intensity.push_back(points.intensity[i]);
-    out.label.push_back(static_cast<PrimitiveLabel>(answers.label[i]));
-    out.object.push_back(answers.object[i]);
-  }
-  if (out.intensity.size() != out.size()) out.intensity.clear();
+/// Appends one point of a scan.
+void append(const mapping::Cloud& cloud, const scan::ScanPoints& points, std::size_t i, std::uint8_t label,
+            std::uint32_t object, PointCloud& out) {
+  const Eigen::Vector3d p_map = scan::toMap(cloud.T_map_sensor, {points.x[i], points.y[i], points.z[i]});
+  out.x.push_back(p_map.x());
+  out.y.push_back(p_map.y());
+  out.z.push_back(p_map.z());
+  if (!points.intensity.empty()) out.intensity.push_back(points.intensity[i]);
+  out.label.push_back(static_cast<PrimitiveLabel>(label));
+  out.object.push_back(object);
 }
 
-bool meets(const mapping::Cloud& cloud, const mapping::ObjectGeometry& object) {
-  return (cloud.min.array() <= object.max.array()).all() && (object.min.array() <= cloud.max.array()).all();
+/// Points of scans with and without intensities have none.
+PointCloud withWholeIntensity(PointCloud points) {
+  if (points.intensity.size() != points.size()) points.intensity.clear();
+  return points;
 }
 
 }  // namespace
@@ -72,29 +68,28 @@ std::vector<Cloud> cloudsOf(const mapping::MapReader& map) {
 }
 
 PointCloud pointsOf(const mapping::MapReader& map, const Cloud& cloud) {
+  std::vector<mapping::Cloud> wanted = map.clouds();
+  std::erase_if(wanted, [&](const mapping::Cloud& stored) { return stored.id.hex() != cloud.id; });
+  if (wanted.empty()) throw Error(ErrorKind::NotFound, "the map has no scan '" + cloud.id + "' (any more)");
   PointCloud points;
-  for (const mapping::Cloud& stored : map.clouds())
-    if (stored.id.hex() == cloud.id) {
-      append(
-          map, stored, [](std::uint32_t) { return true; }, true, points);
-      return points;
-    }
-  throw Error(ErrorKind::NotFound, "the map has no scan '" + cloud.id + "' (any more)");
+  mapping::forEachAnsweredCloud(
+      map, std::move(wanted),
+      [&](const mapping::Cloud& stored, const scan::ScanPoints& measured, const mapping::PointAnswers& answers) {
+        for (std::size_t i = 0; i < measured.size(); ++i)
+          append(stored, measured, i, answers.label[i], answers.object[i], points);
+      });
+  return withWholeIntensity(std::move(points));
 }
 
 PointCloud pointsOf(const mapping::MapReader& map, const std::string& object) {
   const auto number = static_cast<std::uint32_t>(tasks::objectNamed(map, object));
-  const mapping::ObjectGeometry geometry =
-      mapping::geometryOf(map.scene().cluxels, mapping::cluxelsOf(map.objects()[number]));
   PointCloud points;
-  bool with_intensity = true;
-  for (const mapping::Cloud& cloud : map.clouds()) {
-    if (!meets(cloud, geometry)) continue;
-    append(
-        map, cloud, [number](std::uint32_t found) { return found == number; }, with_intensity, points);
-    with_intensity = with_intensity && (points.size() == 0 || !points.intensity.empty());
-  }
-  return points;
+  mapping::forEachCloudOfObject(
+      map, number,
+      [&](const mapping::Cloud& stored, const scan::ScanPoints& measured, const mapping::LabelledPoints& labelled) {
+        for (const auto& [i, label] : labelled) append(stored, measured, i, label, number, points);
+      });
+  return withWholeIntensity(std::move(points));
 }
 
 }  // namespace cluxel

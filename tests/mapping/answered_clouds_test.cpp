@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <map>
 
 #include "cluxel/error.hpp"
 #include "mapping/street_map.hpp"
@@ -57,6 +58,52 @@ TEST_F(AnsweredCloudsTest, ComeInTheOrderThatIsAskedFor) {
   EXPECT_EQ(next, clouds.size());
 }
 
+TEST_F(AnsweredCloudsTest, AnswerForOneOfThemAsForAll) {
+  for (const Cloud& cloud : map->clouds())
+    for (const std::size_t max_cluxels : {std::size_t{1}, std::size_t{1500}, kAnsweredCluxels}) {
+      std::size_t visits = 0;
+      forEachAnsweredCloud(
+          *map, {cloud},
+          [&](const Cloud& visited, const scan::ScanPoints&, const PointAnswers& answers) {
+            ++visits;
+            EXPECT_EQ(visited.id, cloud.id);
+            const PointAnswers expected = map->answersFor(cloud);
+            EXPECT_EQ(answers.cluxel, expected.cluxel) << max_cluxels;
+            EXPECT_EQ(answers.object, expected.object) << max_cluxels;
+          },
+          max_cluxels);
+      EXPECT_EQ(visits, 1U);
+    }
+}
+
+TEST_F(AnsweredCloudsTest, HaveThePointsOfEachObjectWhateverTheRegions) {
+  const std::vector<Cloud> clouds = map->clouds();
+  std::map<std::uint32_t, std::map<ContentHash, LabelledPoints>> expected;  // by object and cloud
+  for (const Cloud& cloud : clouds) {
+    const PointAnswers answers = map->answersFor(cloud);
+    for (std::uint32_t i = 0; i < answers.object.size(); ++i)
+      if (answers.object[i] != kNoObjectOfPoint)
+        expected[answers.object[i]][cloud.id].emplace_back(i, answers.label[i]);
+  }
+  std::size_t in_several_clouds = 0;
+  for (std::uint32_t object = 0; object < map->objectIds().size(); ++object)
+    for (const std::size_t max_cluxels : {std::size_t{1}, std::size_t{1500}, kAnsweredCluxels}) {
+      std::vector<ContentHash> visited;
+      forEachCloudOfObject(
+          *map, object,
+          [&](const Cloud& cloud, const scan::ScanPoints& points, const LabelledPoints& labelled) {
+            visited.push_back(cloud.id);
+            EXPECT_EQ(points.x, map->pointsOf(cloud.id).x);
+            EXPECT_EQ(labelled, expected[object][cloud.id]) << object << " " << max_cluxels;
+          },
+          max_cluxels);
+      EXPECT_EQ(visited.size(), expected[object].size());
+      EXPECT_TRUE(std::is_sorted(visited.begin(), visited.end())) << "clouds are sorted by id";
+      in_several_clouds += visited.size() > 1 ? 1 : 0;
+    }
+  EXPECT_GT(in_several_clouds, 0);
+}
+
 TEST_F(AnsweredCloudsTest, NeedTheFolderForTemporaryFilesOnlyForSeveralRegions) {
   const auto ignore = [](const Cloud&, const scan::ScanPoints&, const PointAnswers&) {};
   const char* before = std::getenv("TMPDIR");
@@ -64,6 +111,9 @@ TEST_F(AnsweredCloudsTest, NeedTheFolderForTemporaryFilesOnlyForSeveralRegions) 
   ::setenv("TMPDIR", "/there/is/none", 1);
   EXPECT_NO_THROW(forEachAnsweredCloud(*map, ignore));
   EXPECT_THROW(forEachAnsweredCloud(*map, ignore, 1), Error);
+  const auto ignoreObject = [](const Cloud&, const scan::ScanPoints&, const LabelledPoints&) {};
+  for (std::uint32_t object = 0; object < map->objectIds().size(); ++object)
+    EXPECT_NO_THROW(forEachCloudOfObject(*map, object, ignoreObject));
   kept ? ::setenv("TMPDIR", kept->c_str(), 1) : ::unsetenv("TMPDIR");
 }
 

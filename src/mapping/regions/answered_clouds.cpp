@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <string>
 #include <unordered_map>
 #include <utility>
@@ -37,6 +38,9 @@ struct AnswerPiece {
     answers.cluxel.push_back(cluxel);
     answers.label.push_back(label);
     answers.object.push_back(object);
+  }
+  void addTo(LabelledPoints& labelled) const {
+    for (std::size_t i = 0; i < point.size(); ++i) labelled.emplace_back(point[i], answers.label[i]);
   }
 };
 
@@ -71,7 +75,9 @@ class RegionAnswers {
     }
   }
 
-  AnswerPiece answersFor(const Cloud& cloud, const scan::ScanPoints& points) const {
+  /// `only`: absent, or the number of the object whose points are wanted.
+  AnswerPiece answersFor(const Cloud& cloud, const scan::ScanPoints& points,
+                         std::optional<std::uint32_t> only = std::nullopt) const {
     AnswerPiece piece;
     auto tile = tiles_.end();
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -83,6 +89,7 @@ class RegionAnswers {
       const std::uint32_t kept = here.finder.find(perception::localPoint(grid_, key, p_map));
       if (kept >= here.cluxels->point_cluxel.size()) failUnfit();
       const std::uint32_t cluxel = here.cluxels->point_cluxel[kept];
+      if (only && here.object.at(cluxel) != *only) continue;
       piece.add(i, here.first_cluxel + cluxel, here.labels.label.at(cluxel), here.object.at(cluxel));
     }
     return piece;
@@ -99,6 +106,7 @@ class RegionAnswers {
 class AnswerPieces {
  public:
   void add(const Cloud& cloud, const AnswerPiece& piece) {
+    if (piece.point.empty()) return;
     const PointAnswers& answers = piece.answers;
     std::string bytes;
     append(bytes, piece.point), append(bytes, answers.cluxel), append(bytes, answers.object);
@@ -111,17 +119,23 @@ class AnswerPieces {
     PointAnswers all{std::vector<std::uint32_t>(count), std::vector<std::uint8_t>(count),
                      std::vector<std::uint32_t>(count)};
     std::size_t joined = 0;
-    if (const auto places = places_.find(cloud.id); places != places_.end())
-      for (const Place& place : places->second) {
-        const AnswerPiece piece = read(place);
-        for (std::size_t i = 0; i < piece.point.size(); ++i) {
-          all.cluxel.at(piece.point[i]) = piece.answers.cluxel[i];
-          all.label[piece.point[i]] = piece.answers.label[i];
-          all.object[piece.point[i]] = piece.answers.object[i];
-        }
-        joined += piece.point.size();
+    forEachPiece(cloud, [&](const AnswerPiece& piece) {
+      for (std::size_t i = 0; i < piece.point.size(); ++i) {
+        all.cluxel.at(piece.point[i]) = piece.answers.cluxel[i];
+        all.label[piece.point[i]] = piece.answers.label[i];
+        all.object[piece.point[i]] = piece.answers.object[i];
       }
+      joined += piece.point.size();
+    });
     if (joined != count) refuseDamaged(cloud.source + ": has points in tiles that are not there");
+    return all;
+  }
+
+  /// The points of the pieces, ascending, with their labels.
+  LabelledPoints labelled(const Cloud& cloud) const {
+    LabelledPoints all;
+    forEachPiece(cloud, [&](const AnswerPiece& piece) { piece.addTo(all); });
+    std::sort(all.begin(), all.end());
     return all;
   }
 
@@ -134,6 +148,12 @@ class AnswerPieces {
   template <typename T>
   static void append(std::string& bytes, const std::vector<T>& values) {
     bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
+  }
+
+  template <typename Visit>
+  void forEachPiece(const Cloud& cloud, const Visit& visit) const {
+    if (const auto places = places_.find(cloud.id); places != places_.end())
+      for (const Place& place : places->second) visit(read(place));
   }
 
   AnswerPiece read(const Place& place) const {
@@ -153,41 +173,68 @@ class AnswerPieces {
   std::unordered_map<scan::ScanId, std::vector<Place>> places_;
 };
 
+/// Clouds and the tiles in which their points are answered for, cut into regions.
 class AnsweredClouds {
  public:
-  AnsweredClouds(const MapReader& map, std::vector<Cloud> clouds, std::size_t max_cluxels)
-      : map_(map), clouds_(std::move(clouds)), inputs_(map.inputs()), stages_(map.model(), inputs_.params) {
+  AnsweredClouds(const MapReader& map, std::vector<Cloud> clouds, const TileSet& wanted, std::size_t max_cluxels)
+      : map_(map),
+        clouds_(std::move(clouds)),
+        grid_(storedGrid(map.transaction())),
+        inputs_(map.inputs()),
+        stages_(map.model(), inputs_.params) {
     std::vector<CountedTile> tiles;
     std::uint32_t first = 0;
     for (const TileKey& tile : storedTiles(map.transaction())) {
       const std::size_t count = perception::cluxelsIn(requiredBlock(map.transaction(), tables::kSummaries, tile));
       first_cluxel_.emplace(tile, first);
       first += static_cast<std::uint32_t>(count);
-      tiles.push_back({tile, count});
+      if (wanted.contains(tile)) tiles.push_back({tile, count});
     }
     regions_ = regionsOf(std::move(tiles), max_cluxels);
   }
 
   void visitAll(const AnsweredVisit& visit) {
     if (regions_.size() == 1) return visitOneRegion(visit);
-    AnswerPieces pieces;
-    const perception::TileGrid grid = storedGrid(map_.transaction());
-    for (const TileSet& region : regions_) {
-      const RegionAnswers answers(map_, stages_, region, first_cluxel_);
-      for (const Cloud& cloud : clouds_)
-        if (!tilesInBounds(cloud, region, grid).empty())
-          if (const AnswerPiece piece = answers.answersFor(cloud, map_.pointsOf(cloud.id)); !piece.point.empty())
-            pieces.add(cloud, piece);
-    }
-    stages_.dropAll();
-    returnFreeMemory();
+    collect(std::nullopt);
     for (const Cloud& cloud : clouds_) {
       const scan::ScanPoints points = map_.pointsOf(cloud.id);
-      visit(cloud, points, pieces.join(cloud, points.size()));
+      visit(cloud, points, pieces_.join(cloud, points.size()));
     }
   }
 
+  void visitObject(std::uint32_t object, const ObjectPointsVisit& visit) {
+    if (regions_.size() == 1) return visitObjectInOneRegion(object, visit);
+    collect(object);
+    for (const Cloud& cloud : clouds_)
+      if (const LabelledPoints labelled = pieces_.labelled(cloud); !labelled.empty())
+        visit(cloud, map_.pointsOf(cloud.id), labelled);
+  }
+
  private:
+  bool meets(const Cloud& cloud, const TileSet& region) const { return !tilesInBounds(cloud, region, grid_).empty(); }
+
+  /// `only`: as RegionAnswers::answersFor() has it.
+  void collect(std::optional<std::uint32_t> only) {
+    for (const TileSet& region : regions_) {
+      const RegionAnswers answers(map_, stages_, region, first_cluxel_);
+      for (const Cloud& cloud : clouds_)
+        if (meets(cloud, region)) pieces_.add(cloud, answers.answersFor(cloud, map_.pointsOf(cloud.id), only));
+    }
+    stages_.dropAll();
+    returnFreeMemory();
+  }
+
+  void visitObjectInOneRegion(std::uint32_t object, const ObjectPointsVisit& visit) {
+    const RegionAnswers answers(map_, stages_, regions_.front(), first_cluxel_);
+    for (const Cloud& cloud : clouds_) {
+      if (!meets(cloud, regions_.front())) continue;
+      const scan::ScanPoints points = map_.pointsOf(cloud.id);
+      LabelledPoints labelled;
+      answers.answersFor(cloud, points, object).addTo(labelled);
+      if (!labelled.empty()) visit(cloud, points, labelled);
+    }
+  }
+
   void visitOneRegion(const AnsweredVisit& visit) {
     const RegionAnswers answers(map_, stages_, regions_.front(), first_cluxel_);
     for (const Cloud& cloud : clouds_) {
@@ -200,11 +247,22 @@ class AnsweredClouds {
 
   const MapReader& map_;
   std::vector<Cloud> clouds_;
+  perception::TileGrid grid_;
   MapInputs inputs_;
   TileStages stages_;
   std::map<TileKey, std::uint32_t> first_cluxel_;
   std::vector<TileSet> regions_;
+  AnswerPieces pieces_;
 };
+
+/// Those in which the clouds may have points.
+TileSet tilesUnder(const MapReader& map, const std::vector<Cloud>& clouds) {
+  const TileSet all = storedTiles(map.transaction());
+  const perception::TileGrid grid = storedGrid(map.transaction());
+  TileSet tiles;
+  for (const Cloud& cloud : clouds) tiles.merge(tilesInBounds(cloud, all, grid));
+  return tiles;
+}
 
 }  // namespace
 
@@ -214,7 +272,16 @@ void forEachAnsweredCloud(const MapReader& map, const AnsweredVisit& visit, std:
 
 void forEachAnsweredCloud(const MapReader& map, std::vector<Cloud> clouds, const AnsweredVisit& visit,
                           std::size_t max_cluxels) {
-  AnsweredClouds(map, std::move(clouds), max_cluxels).visitAll(visit);
+  const TileSet tiles = tilesUnder(map, clouds);
+  AnsweredClouds(map, std::move(clouds), tiles, max_cluxels).visitAll(visit);
+}
+
+void forEachCloudOfObject(const MapReader& map, std::uint32_t object, const ObjectPointsVisit& visit,
+                          std::size_t max_cluxels) {
+  const std::optional<ObjectRecord> record = storedRecord(map.transaction(), map.objectIds().at(object));
+  if (!record) refuseDamaged("an object is not there");
+  const TileSet tiles(record->tiles.begin(), record->tiles.end());
+  AnsweredClouds(map, map.clouds(), tiles, max_cluxels).visitObject(object, visit);
 }
 
 }  // namespace cluxel::mapping
