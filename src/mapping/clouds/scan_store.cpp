@@ -147,6 +147,15 @@ std::string_view requiredPoints(const rdf::ReadTransaction& transaction, const s
   throw Error(ErrorKind::StoreUnavailable, "cloud " + id.hex() + " has no points in the map; build it anew");
 }
 
+void requireTime(const scan::Scan& scan) {
+  if (scan.time_s && !hasCalendarYear(*scan.time_s))
+    throw InputError({.file = scan.source},
+                     "its time of " + shortNumber(*scan.time_s) + " s lies outside the years 1 to 9999",
+                     "times are seconds since 1970-01-01 UTC: is it in milliseconds or nanoseconds?");
+}
+
+}  // namespace
+
 scan::Scan scanOf(const Cloud& cloud, scan::ScanPoints points) {
   scan::Scan scan;
   scan.points = std::move(points);
@@ -157,15 +166,6 @@ scan::Scan scanOf(const Cloud& cloud, scan::ScanPoints points) {
   scan.id = cloud.id;
   return scan;
 }
-
-void requireTime(const scan::Scan& scan) {
-  if (scan.time_s && !hasCalendarYear(*scan.time_s))
-    throw InputError({.file = scan.source},
-                     "its time of " + shortNumber(*scan.time_s) + " s lies outside the years 1 to 9999",
-                     "times are seconds since 1970-01-01 UTC: is it in milliseconds or nanoseconds?");
-}
-
-}  // namespace
 
 std::vector<perception::SceneView> viewsOf(const std::vector<Cloud>& clouds) {
   std::vector<perception::SceneView> views;

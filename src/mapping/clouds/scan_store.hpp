@@ -89,6 +89,8 @@ TileSet removeScan(rdf::WriteTransaction& transaction, const scan::ScanId& id);
 std::vector<ScanSegments> segmentsOfScans(const rdf::ReadTransaction& transaction, std::span<const scan::ScanId> scans,
                                           unsigned threads);
 
+/// A cloud with its points as the scan that it was given as.
+scan::Scan scanOf(const Cloud& cloud, scan::ScanPoints points);
 /// A stored scan as it was given. Throws Error (NotFound) when there is none.
 scan::Scan storedScan(const rdf::ReadTransaction& transaction, const scan::ScanId& id);
 

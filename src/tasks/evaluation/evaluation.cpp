@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "cluxel/error.hpp"
+#include "mapping/clouds/scan_store.hpp"
 #include "mapping/layers/stored_layers.hpp"
 #include "mapping/map_inputs.hpp"
 #include "mapping/regions/answered_clouds.hpp"
@@ -25,16 +26,6 @@ double ratio(std::uint64_t part, std::uint64_t whole) {
 
 double harmonic(double a, double b) {
   return a + b == 0 ? 0.0 : 2 * a * b / (a + b);
-}
-
-scan::Scan scanOf(const mapping::Cloud& cloud, const scan::ScanPoints& points) {
-  scan::Scan scan;
-  scan.points = points;
-  scan.T_map_sensor = cloud.T_map_sensor;
-  scan.has_pose = cloud.has_pose;
-  scan.source = cloud.source;
-  scan.id = cloud.id;
-  return scan;
 }
 
 /// The objects of the map, without what belongs to them.

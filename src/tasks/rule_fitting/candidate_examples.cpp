@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <map>
+#include <utility>
 
+#include "mapping/clouds/scan_store.hpp"
 #include "mapping/facts/ask_replay.hpp"
+#include "mapping/regions/answered_clouds.hpp"
 #include "rules/decide/decision_record.hpp"
 #include "rules/decide/reason.hpp"
 
@@ -15,28 +18,48 @@ namespace {
 
 using Votes = std::map<std::size_t, double>;  ///< points by class number
 
-/// The truth of the points of each cluxel.
-struct CluxelTruth {
-  std::vector<Votes> votes;
-  std::vector<double> points;  ///< all points, with truth or without
-};
-
-CluxelTruth truthOfCluxels(const mapping::MapReader& map, const TruthSource& truth) {
-  CluxelTruth known;
-  known.votes.resize(map.scene().cluxels.size());
-  known.points.resize(map.scene().cluxels.size(), 0);
-  for (const mapping::Cloud& cloud : map.clouds()) {
-    const scan::Scan scan = map.scanOf(cloud.id);
-    const scan::PointTruth of_points = truth.truthOf(scan);
-    const mapping::PointAnswers answers = map.answersFor(cloud);
-    for (std::size_t i = 0; i < scan.points.size(); ++i) {
-      known.points[answers.cluxel[i]] += 1;
-      if (of_points.object_class[i] >= 0)
-        known.votes[answers.cluxel[i]][static_cast<std::size_t>(of_points.object_class[i])] += 1;
-    }
+/// The truth of the points of each cluxel. Nearly all cluxels have points of one class only, so what a map of votes for
+/// each would take is spared.
+class CluxelTruth {
+ public:
+  CluxelTruth(const mapping::MapReader& map, const TruthSource& truth) {
+    mapping::forEachAnsweredCloud(
+        map, [&](const mapping::Cloud& cloud, const scan::ScanPoints& points, const mapping::PointAnswers& answers) {
+          const scan::PointTruth of_points = truth.truthOf(scanOf(cloud, points));
+          for (std::size_t i = 0; i < points.size(); ++i) add(answers.cluxel[i], of_points.object_class[i]);
+        });
   }
-  return known;
-}
+
+  /// All points, with truth or without.
+  double pointsOf(std::uint32_t cluxel) const { return cluxel < points_.size() ? points_[cluxel] : 0; }
+
+  void addVotes(std::uint32_t cluxel, Votes& votes) const {
+    if (cluxel >= points_.size()) return;
+    if (first_count_[cluxel] > 0) votes[static_cast<std::size_t>(first_class_[cluxel])] += first_count_[cluxel];
+    for (auto other = others_.lower_bound({cluxel, 0}); other != others_.end() && other->first.first == cluxel; ++other)
+      votes[static_cast<std::size_t>(other->first.second)] += other->second;
+  }
+
+ private:
+  void add(std::uint32_t cluxel, std::int8_t object_class) {
+    if (cluxel >= points_.size()) {
+      points_.resize(cluxel + 1, 0);
+      first_count_.resize(cluxel + 1, 0);
+      first_class_.resize(cluxel + 1, -1);
+    }
+    ++points_[cluxel];
+    if (object_class < 0) return;
+    if (first_class_[cluxel] < 0) first_class_[cluxel] = object_class;
+    if (first_class_[cluxel] == object_class)
+      ++first_count_[cluxel];
+    else
+      ++others_[{cluxel, object_class}];
+  }
+
+  std::vector<std::uint32_t> points_, first_count_;
+  std::vector<std::int8_t> first_class_;  ///< the class of the first point that has one; -1: none
+  std::map<std::pair<std::uint32_t, std::int8_t>, std::uint32_t> others_;  ///< by cluxel and class
+};
 
 class ExampleCollector {
  public:
@@ -45,7 +68,7 @@ class ExampleCollector {
       : rules_(rules),
         class_names_(namesOf(rules.catalogue)),
         classes_(truth.classes()),
-        truth_(truthOfCluxels(map, truth)),
+        truth_(map, truth),
         attributes_(attributes) {}
 
   void see(const rules::ReasoningState& state, const rules::Rule& rule, const rules::Verdict& verdict) {
@@ -53,12 +76,10 @@ class ExampleCollector {
     Votes votes;
     double with_truth = 0, all = 0;
     for (std::uint32_t cluxel : cluxels) {
-      all += truth_.points[cluxel];
-      for (const auto& [class_number, count] : truth_.votes[cluxel]) {
-        votes[class_number] += count;
-        with_truth += count;
-      }
+      all += truth_.pointsOf(cluxel);
+      truth_.addVotes(cluxel, votes);
     }
+    for (const auto& [class_number, count] : votes) with_truth += count;
     if (votes.empty() || 2 * with_truth < all) return;
     const auto winner =
         std::max_element(votes.begin(), votes.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
