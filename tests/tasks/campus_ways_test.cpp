@@ -44,7 +44,7 @@ TEST(WaysOfACampus, LeavingThingsOutOpensCellsAndClosesNoneButSteepOnesNearThem)
   const PassableGrid without = passableIn(map, request);
   const std::vector<bool> is_left_out = leftOut(map, request);
   const TerrainGrid terrain = terrainIn(map, request);
-  std::vector<std::uint8_t> stood(terrain.frame.size(), 0);
+  LargeArray<std::uint8_t> stood(terrain.frame.size(), 0);
   for (std::uint32_t cell = 0; cell < stood.size(); ++cell)
     for (const std::uint32_t thing : terrain.thingsIn(cell))
       if (thing != kUnnamedThing && is_left_out[thing]) stood[cell] = 1;
@@ -90,7 +90,7 @@ TEST(WaysOfACampus, RoutesStayOnOpenCellsAndAreReported) {
   const PassableGrid grid = passableIn(map, {});
   std::uint32_t from = 0;
   while (grid.closure[from] != Closure::Open) ++from;
-  const std::vector<double> walk_m = walkLengths(grid, grid.frame.centreOf(from), 1e6);
+  const LargeArray<double> walk_m = walkLengths(grid, grid.frame.centreOf(from), 1e6);
   std::uint32_t to = from;
   for (std::uint32_t cell = 0; cell < walk_m.size(); ++cell)
     if (std::isfinite(walk_m[cell]) && walk_m[cell] > walk_m[to]) to = cell;

@@ -130,7 +130,7 @@ TEST(GroundRelief, LargerLimitsOnlyOpenWays) {
       WayParams params;
       params.max_step_m = max_step_m;
       params.max_slope = 2;
-      const std::vector<double> walk_m = walkLengths(passableOf(terrain, params, {}, {}), {6, 1}, 1e9);
+      const LargeArray<double> walk_m = walkLengths(passableOf(terrain, params, {}, {}), {6, 1}, 1e9);
       const auto reached = static_cast<std::size_t>(
           std::count_if(walk_m.begin(), walk_m.end(), [](double length) { return std::isfinite(length); }));
       EXPECT_GE(reached, before) << "with steps of " << max_step_m;

@@ -21,7 +21,7 @@ namespace cluxel::tasks {
 namespace {
 
 PlaceEvidence evidence(const GridFrame& frame, std::uint32_t cell, double within_m, double probability) {
-  PlaceEvidence place{"Thing", within_m, probability, std::vector<std::uint8_t>(frame.size(), 0)};
+  PlaceEvidence place{"Thing", within_m, probability, LargeArray<std::uint8_t>(frame.size(), 0)};
   if (cell < frame.size()) place.is_there[cell] = 1;
   return place;
 }
@@ -37,11 +37,11 @@ PassableGrid plain(const GridFrame& frame) {
 }
 
 SightGrid openSight(const GridFrame& frame) {
-  return {frame, std::vector<std::uint8_t>(frame.size(), 0)};
+  return {frame, LargeArray<std::uint8_t>(frame.size(), 0)};
 }
 
-std::vector<float> nothingKnown(const GridFrame& frame) {
-  return std::vector<float>(frame.size(), 0.0F);
+LargeArray<float> nothingKnown(const GridFrame& frame) {
+  return LargeArray<float>(frame.size(), 0.0F);
 }
 
 TEST(SearchField, SpreadsEachPlaceAndTheRest) {
@@ -128,7 +128,7 @@ TEST(SearchTour, EachStopIsTheBestOfAllCellsForItsWalk) {
     std::uint32_t at = 0;
     double total_m = 0, so_far = 0;
     for (const SearchStop& stop : stops) {
-      const std::vector<double> walk_m = cheapestWays(grid, at, {.is_priced = false}).cost;
+      const LargeArray<double> walk_m = cheapestWays(grid, at, {.is_priced = false}).cost;
       double best = 0, here = 0;
       for (std::uint32_t cell = 0; cell < frame.size(); ++cell) {
         double gain = 0;

@@ -232,10 +232,10 @@ TEST(SearchField, ReasonsHoldMorePlacesThanAByte) {
   const GridFrame frame{0, 0, 1, static_cast<int>(count), 1};
   std::vector<PlaceEvidence> places;
   for (std::size_t i = 0; i < count; ++i) {
-    places.push_back({"Building", 0.5, 0.9 / static_cast<double>(count), std::vector<std::uint8_t>(count, 0)});
+    places.push_back({"Building", 0.5, 0.9 / static_cast<double>(count), LargeArray<std::uint8_t>(count, 0)});
     places.back().is_there[i] = 1;
   }
-  const SearchField field = fieldOf(frame, std::vector<float>(count, 0.0F), places);
+  const SearchField field = fieldOf(frame, LargeArray<float>(count, 0.0F), places);
   for (std::size_t i = 0; i < count; ++i) EXPECT_EQ(field.reason[i], i);
 }
 

@@ -50,7 +50,7 @@ TEST(NearestMarked, GivesTheDistancesOfAllPairs) {
   std::mt19937 random(2);
   for (int round = 0; round < 60; ++round) {
     const GridFrame frame{0, 0, 1, 1 + static_cast<int>(random() % 12), 1 + static_cast<int>(random() % 12)};
-    std::vector<std::uint8_t> marked(frame.size());
+    LargeArray<std::uint8_t> marked(frame.size());
     for (std::uint8_t& mark : marked) mark = random() % 6 == 0 ? 1 : 0;
     const NearestMarked nearest = nearestMarked(frame, marked);
     for (std::uint32_t a = 0; a < frame.size(); ++a) {
@@ -69,8 +69,8 @@ TEST(NearestMarked, GivesTheDistancesOfAllPairs) {
 }
 
 /// Costs by relaxing all edges until nothing changes.
-std::vector<double> relaxed(const PassableGrid& grid, std::uint32_t start) {
-  std::vector<double> cost(grid.frame.size(), kNever);
+LargeArray<double> relaxed(const PassableGrid& grid, std::uint32_t start) {
+  LargeArray<double> cost(grid.frame.size(), kNever);
   const auto isOpen = [&](int x, int y) {
     return grid.frame.holds(x, y) && grid.closure[grid.frame.index(x, y)] == Closure::Open;
   };
@@ -101,7 +101,7 @@ TEST(WaySearch, FindsTheCostsOfRelaxingAllEdges) {
   for (int round = 0; round < 40; ++round) {
     const PassableGrid grid = passable(randomTerrain(random, 7, 6));
     const auto start = static_cast<std::uint32_t>(random() % grid.frame.size());
-    const std::vector<double> expected = relaxed(grid, start);
+    const LargeArray<double> expected = relaxed(grid, start);
     const CheapestWays ways = cheapestWays(grid, start);
     for (std::uint32_t cell = 0; cell < grid.frame.size(); ++cell) {
       ASSERT_EQ(std::isinf(ways.cost[cell]), std::isinf(expected[cell]));
@@ -207,7 +207,7 @@ TEST(Routes, PlacesFarFromOpenGroundAreRefused) {
 
 TEST(Walks, EndAtTheirReachAndFindWhatStandsBeside) {
   const TerrainGrid terrain = terrainFrom({"..........", "........#.", ".........."});
-  const std::vector<double> far = walkLengths(passable(terrain), {0.5, 1.5}, 7.5);
+  const LargeArray<double> far = walkLengths(passable(terrain), {0.5, 1.5}, 7.5);
   for (std::uint32_t cell = 0; cell < far.size(); ++cell) EXPECT_TRUE(std::isinf(far[cell]) || far[cell] <= 7.5);
   EXPECT_NEAR(far[terrain.frame.index(7, 1)], 7, 1e-9);
   const auto reached = objectsWithin(terrain, far, {false});

@@ -70,7 +70,7 @@ ExitCode reach(const WayArguments& arguments, Session& session) {
   const tasks::TerrainGrid terrain = terrainIn(map, arguments.request);
   const tasks::PassableGrid grid = passableIn(map, terrain, arguments.request);
   const double reach_m = arguments.minutes * 60 * arguments.speed_m_s;
-  const std::vector<double> walk_m = walkLengths(grid, from, reach_m);
+  const LargeArray<double> walk_m = walkLengths(grid, from, reach_m);
   const auto cells = std::count_if(walk_m.begin(), walk_m.end(), [](double length) { return std::isfinite(length); });
   const double area_m2 = static_cast<double>(cells) * grid.frame.cell_m * grid.frame.cell_m;
   const auto reached = objectsWithin(terrain, walk_m, leftOut(map, arguments.request));

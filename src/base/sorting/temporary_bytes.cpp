@@ -14,15 +14,11 @@
 
 namespace cluxel {
 
-namespace {
-
-[[noreturn]] void failTemporary(const std::string& what, int code) {
+void failTemporaryFile(const std::string& what, int code) {
   throw Error(ErrorKind::StoreUnavailable, temporaryFolderPath().string() + ": a temporary file cannot be " + what +
                                                " (" + std::generic_category().message(code) +
                                                "); make room there, or set TMPDIR to a folder with more");
 }
-
-}  // namespace
 
 TemporaryBytes::~TemporaryBytes() {
   if (file_ >= 0) ::close(file_);
@@ -30,12 +26,12 @@ TemporaryBytes::~TemporaryBytes() {
 
 std::uint64_t TemporaryBytes::append(std::string_view bytes) {
   if (file_ < 0) file_ = openNamelessFile(temporaryFolderPath());
-  if (file_ < 0) failTemporary("made", errno);
+  if (file_ < 0) failTemporaryFile("made", errno);
   const std::uint64_t begin = size_;
   while (!bytes.empty()) {
     const ssize_t count = ::pwrite(file_, bytes.data(), bytes.size(), static_cast<off_t>(size_));
     if (count < 0 && errno == EINTR) continue;
-    if (count < 0) failTemporary("written", errno);
+    if (count < 0) failTemporaryFile("written", errno);
     bytes.remove_prefix(static_cast<std::size_t>(count));
     size_ += static_cast<std::uint64_t>(count);
   }
@@ -46,14 +42,14 @@ void TemporaryBytes::read(std::uint64_t place, char* into, std::size_t count) co
   while (count > 0) {
     const ssize_t part = ::pread(file_, into, count, static_cast<off_t>(place));
     if (part < 0 && errno == EINTR) continue;
-    if (part <= 0) failTemporary("read", part < 0 ? errno : EIO);
+    if (part <= 0) failTemporaryFile("read", part < 0 ? errno : EIO);
     into += part, place += static_cast<std::uint64_t>(part), count -= static_cast<std::size_t>(part);
   }
 }
 
 void TemporaryBytes::clear() {
   size_ = 0;
-  if (file_ >= 0 && ::ftruncate(file_, 0) != 0) failTemporary("emptied", errno);
+  if (file_ >= 0 && ::ftruncate(file_, 0) != 0) failTemporaryFile("emptied", errno);
 }
 
 }  // namespace cluxel

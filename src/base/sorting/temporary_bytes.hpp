@@ -4,9 +4,13 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <string_view>
 
 namespace cluxel {
+
+/// Throws Error (StoreUnavailable): a temporary file cannot be "made", or what else was tried. `code`: as errno.
+[[noreturn]] void failTemporaryFile(const std::string& what, int code);
 
 /// A file without a name in the folder for temporary files, made when the first bytes come. A kill leaves nothing.
 class TemporaryBytes {

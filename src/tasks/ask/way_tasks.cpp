@@ -87,7 +87,7 @@ TaskAnswer runReach(const TaskContext& context, const TaskValues& values) {
   const TerrainGrid terrain = terrainIn(map, request);
   const PassableGrid grid = passableIn(map, terrain, request);
   const double speed_m_s = values.number("speed"), reach_m = values.number("minutes") * 60 * speed_m_s;
-  const std::vector<double> walk_m = walkLengths(grid, placeNamed(map, values.text("from")), reach_m);
+  const LargeArray<double> walk_m = walkLengths(grid, placeNamed(map, values.text("from")), reach_m);
   TaskAnswer answer;
   for (const ReachedObject& reached : objectsWithin(terrain, walk_m, leftOut(map, request))) {
     const std::string iri = iriOfThing(map, reached.object);
@@ -148,7 +148,7 @@ TaskAnswer runSearch(const TaskContext& context, const TaskValues& values) {
 }
 
 /// Axis-parallel rectangles that cover the marked cells: runs of a row, joined with equal runs of the rows before.
-std::vector<Eigen::Vector2d> rectanglesOf(const GridFrame& frame, const std::vector<std::uint8_t>& marked) {
+std::vector<Eigen::Vector2d> rectanglesOf(const GridFrame& frame, const LargeArray<std::uint8_t>& marked) {
   struct Run {
     int first, last, from_row, to_row;
   };
@@ -183,7 +183,7 @@ TaskAnswer runCostMap(const TaskContext& context, const TaskValues& values) {
   const double cell_m2 = grid.frame.cell_m * grid.frame.cell_m;
   for (const CellKind kind : {CellKind::Free, CellKind::Thing, CellKind::Step, CellKind::TooSteep, CellKind::TooNarrow,
                               CellKind::Unobserved}) {
-    std::vector<std::uint8_t> marked(grid.frame.size(), 0);
+    LargeArray<std::uint8_t> marked(grid.frame.size(), 0);
     for (std::uint32_t cell = 0; cell < grid.frame.size(); ++cell) marked[cell] = kindOf(grid, cell) == kind ? 1 : 0;
     const auto count = std::count(marked.begin(), marked.end(), 1);
     if (count == 0) continue;

@@ -14,9 +14,9 @@ namespace cluxel::tasks {
 namespace {
 
 /// The cells within the place's distance; empty when nothing of the class is in the map.
-std::vector<std::uint32_t> cellsOf(const GridFrame& frame, const PlaceEvidence& place) {
+LargeArray<std::uint32_t> cellsOf(const GridFrame& frame, const PlaceEvidence& place) {
   const NearestMarked nearest = nearestMarked(frame, place.is_there);
-  std::vector<std::uint32_t> cells;
+  LargeArray<std::uint32_t> cells;
   for (std::uint32_t cell = 0; cell < frame.size(); ++cell)
     if (nearest.distance[cell] * frame.cell_m <= place.within_m) cells.push_back(cell);
   return cells;
@@ -34,10 +34,10 @@ std::vector<PlaceEvidence> evidenceOf(const mapping::MapReader& map, const Terra
   return evidence;
 }
 
-std::vector<float> knownShare(const mapping::MapReader& map, const TerrainGrid& terrain, const SightGrid& sight,
-                              const SearchParams& params) {
+LargeArray<float> knownShare(const mapping::MapReader& map, const TerrainGrid& terrain, const SightGrid& sight,
+                             const SearchParams& params) {
   const GridFrame& frame = sight.frame;
-  std::vector<float> known(frame.size(), 0.0F);
+  LargeArray<float> known(frame.size(), 0.0F);
   const double far_m = params.view_m * std::max(1.0, params.fade);
   for (const mapping::Cloud& cloud : map.clouds()) {
     for (std::uint32_t cell = 0; !cloud.has_pose && cell < frame.size(); ++cell)
@@ -54,16 +54,16 @@ std::vector<float> knownShare(const mapping::MapReader& map, const TerrainGrid& 
   return known;
 }
 
-SearchField fieldOf(const GridFrame& frame, const std::vector<float>& known, const std::vector<PlaceEvidence>& places) {
+SearchField fieldOf(const GridFrame& frame, const LargeArray<float>& known, const std::vector<PlaceEvidence>& places) {
   constexpr double rounding = 1e-9;
   if (places.size() > kAnywhere)
     throw Error(ErrorKind::InvalidArgument, "the class has " + std::to_string(places.size()) +
                                                 " usual places; write at most " + std::to_string(kAnywhere));
-  SearchField field{frame, std::vector<double>(frame.size(), 0.0), std::vector<PlaceNumber>(frame.size(), kAnywhere)};
-  std::vector<double> largest_share(frame.size(), 0.0);
+  SearchField field{frame, LargeArray<double>(frame.size(), 0.0), LargeArray<PlaceNumber>(frame.size(), kAnywhere)};
+  LargeArray<double> largest_share(frame.size(), 0.0);
   double anywhere = 1;
   for (std::size_t i = 0; i < places.size(); ++i) {
-    const std::vector<std::uint32_t> cells = cellsOf(frame, places[i]);
+    const LargeArray<std::uint32_t> cells = cellsOf(frame, places[i]);
     if (cells.empty()) continue;  // its probability stays with the places that are not named
     const double share = places[i].probability / static_cast<double>(cells.size());
     anywhere -= places[i].probability;

@@ -16,7 +16,7 @@ namespace cluxel::tasks {
 struct PlaceEvidence {
   std::string near_class;  ///< local name
   double within_m = 0, probability = 0;
-  std::vector<std::uint8_t> is_there;  ///< per cell, 1: an object of that class is there
+  LargeArray<std::uint8_t> is_there;  ///< per cell, 1: an object of that class is there
 };
 
 struct SearchParams {
@@ -33,8 +33,8 @@ inline constexpr PlaceNumber kAnywhere = std::numeric_limits<PlaceNumber>::max()
 
 struct SearchField {
   GridFrame frame;
-  std::vector<double> probability;  ///< that a further object is there; the sum is 1
-  std::vector<PlaceNumber> reason;  ///< the place that says most about the cell, or kAnywhere
+  LargeArray<double> probability;  ///< that a further object is there; the sum is 1
+  LargeArray<PlaceNumber> reason;  ///< the place that says most about the cell, or kAnywhere
 };
 
 /// The usual places as they are in the map.
@@ -44,13 +44,13 @@ std::vector<PlaceEvidence> evidenceOf(const mapping::MapReader& map, const Terra
 /// Per cell, the probability that the map knows an object of the class that is there: `detection` within view_m of a
 /// scan that sees the cell, from there falling to 0 at fade times view_m. Scans without a pose count where ground was
 /// measured.
-std::vector<float> knownShare(const mapping::MapReader& map, const TerrainGrid& terrain, const SightGrid& sight,
-                              const SearchParams& params);
+LargeArray<float> knownShare(const mapping::MapReader& map, const TerrainGrid& terrain, const SightGrid& sight,
+                             const SearchParams& params);
 
 /// The probability of each place is spread evenly over the cells within its distance of the things that are there, the
 /// rest over all cells; then a cell keeps the share that the map does not know. `known`: per cell, as knownShare().
 /// Throws Error (InvalidArgument) for places whose probabilities sum to more than 1, and for more than kAnywhere
 /// places.
-SearchField fieldOf(const GridFrame& frame, const std::vector<float>& known, const std::vector<PlaceEvidence>& places);
+SearchField fieldOf(const GridFrame& frame, const LargeArray<float>& known, const std::vector<PlaceEvidence>& places);
 
 }  // namespace cluxel::tasks

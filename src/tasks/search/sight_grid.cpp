@@ -78,7 +78,7 @@ SightGrid sightOf(const mapping::MapReader& map, const TerrainGrid& terrain, con
   std::vector<bool> is_high;
   const std::vector<double> tops = mapping::topsOfObjects(map);
   for (std::size_t i = 0; i < tops.size(); ++i) is_high.push_back(!is_left_out[i] && tops[i] >= eye_m);
-  SightGrid sight{terrain.frame, std::vector<std::uint8_t>(terrain.frame.size(), 0)};
+  SightGrid sight{terrain.frame, LargeArray<std::uint8_t>(terrain.frame.size(), 0)};
   for (std::uint32_t cell = 0; cell < terrain.frame.size(); ++cell)
     for (const std::uint32_t thing : terrain.thingsIn(cell))
       if (thing != kUnnamedThing && is_high[thing]) sight.opaque[cell] = 1;

@@ -11,7 +11,7 @@ namespace cluxel::tasks {
 
 struct SightGrid {
   GridFrame frame;
-  std::vector<std::uint8_t> opaque;  ///< per cell, 1: what is in it hides what is behind it
+  LargeArray<std::uint8_t> opaque;  ///< per cell, 1: what is in it hides what is behind it
 };
 
 /// Opaque are the cells of objects whose top is at least `eye_m` above their ground, but for those that are left out.

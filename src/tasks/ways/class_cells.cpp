@@ -48,7 +48,7 @@ LinePart partWithin(const Eigen::AlignedBox2d& box, const Eigen::Vector2d& from,
 }
 
 /// Marks the cells along the lines of a geometry: a way is near wherever it runs. Cost: the cells that it crosses.
-void markLines(const GridFrame& frame, std::string_view wkt, std::vector<std::uint8_t>& marked) {
+void markLines(const GridFrame& frame, std::string_view wkt, LargeArray<std::uint8_t>& marked) {
   const auto text = rdf::splitWkt(wkt);
   const auto shape = text ? rdf::readWkt(text->shape) : std::nullopt;
   if (!shape) return;
@@ -68,17 +68,17 @@ void markLines(const GridFrame& frame, std::string_view wkt, std::vector<std::ui
 
 }  // namespace
 
-std::vector<std::uint8_t> cellsWith(const mapping::MapReader& map, const TerrainGrid& terrain,
-                                    const std::string& class_iri, const std::vector<bool>& is_left_out) {
+LargeArray<std::uint8_t> cellsWith(const mapping::MapReader& map, const TerrainGrid& terrain,
+                                   const std::string& class_iri, const std::vector<bool>& is_left_out) {
   std::vector<bool> is_of_class(is_left_out.size(), false);
   for (const std::uint32_t object : objectsOfClass(map, class_iri)) is_of_class[object] = true;
   return cellsWith(map, terrain, class_iri, is_of_class, is_left_out);
 }
 
-std::vector<std::uint8_t> cellsWith(const mapping::MapReader& map, const TerrainGrid& terrain,
-                                    const std::string& class_iri, const std::vector<bool>& is_of_class,
-                                    const std::vector<bool>& is_left_out) {
-  std::vector<std::uint8_t> marked(terrain.frame.size(), 0);
+LargeArray<std::uint8_t> cellsWith(const mapping::MapReader& map, const TerrainGrid& terrain,
+                                   const std::string& class_iri, const std::vector<bool>& is_of_class,
+                                   const std::vector<bool>& is_left_out) {
+  LargeArray<std::uint8_t> marked(terrain.frame.size(), 0);
   for (std::uint32_t cell = 0; cell < terrain.frame.size(); ++cell)
     for (const std::uint32_t thing : terrain.thingsIn(cell))
       if (thing != kUnnamedThing && is_of_class[thing] && !is_left_out[thing]) marked[cell] = 1;

@@ -13,11 +13,11 @@ namespace cluxel::tasks {
 /// The cells that hold something of a class: cells in which such an object stands, the
 /// positions of things that SPARQL rules derive, and cells along the lines of ways. `is_left_out`: per object, true
 /// where it does not count.
-std::vector<std::uint8_t> cellsWith(const mapping::MapReader& map, const TerrainGrid& terrain,
-                                    const std::string& class_iri, const std::vector<bool>& is_left_out);
+LargeArray<std::uint8_t> cellsWith(const mapping::MapReader& map, const TerrainGrid& terrain,
+                                   const std::string& class_iri, const std::vector<bool>& is_left_out);
 /// The same where it is known which objects are of the class, as objectsOfClass() tells.
-std::vector<std::uint8_t> cellsWith(const mapping::MapReader& map, const TerrainGrid& terrain,
-                                    const std::string& class_iri, const std::vector<bool>& is_of_class,
-                                    const std::vector<bool>& is_left_out);
+LargeArray<std::uint8_t> cellsWith(const mapping::MapReader& map, const TerrainGrid& terrain,
+                                   const std::string& class_iri, const std::vector<bool>& is_of_class,
+                                   const std::vector<bool>& is_left_out);
 
 }  // namespace cluxel::tasks

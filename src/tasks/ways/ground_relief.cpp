@@ -103,8 +103,8 @@ class LineRelief {
 
 GroundRelief reliefOf(const TerrainGrid& terrain) {
   const GridFrame& frame = terrain.frame;
-  GroundRelief relief{std::vector<float>(frame.size(), 0.0F), std::vector<float>(frame.size(), 0.0F),
-                      std::vector<float>(frame.size(), 0.0F)};
+  GroundRelief relief{LargeArray<float>(frame.size(), 0.0F), LargeArray<float>(frame.size(), 0.0F),
+                      LargeArray<float>(frame.size(), 0.0F)};
   for (int row = 0; row < frame.rows; ++row) {
     const LineRelief line(terrain, frame.index(0, row), 1, frame.columns);
     for (int column = 0; column < frame.columns; ++column) relief.slope[frame.index(column, row)] = line.slope(column);

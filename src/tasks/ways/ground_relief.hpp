@@ -11,9 +11,9 @@ namespace cluxel::tasks {
 
 /// Values for each cell.
 struct GroundRelief {
-  std::vector<float> slope;       ///< rise over run over a metre (two cells, when these are longer), without steps
-  std::vector<float> step_east;   ///< height of the step to the neighbour with the next x [m]; 0 without one
-  std::vector<float> step_north;  ///< the same to the neighbour with the next y
+  LargeArray<float> slope;       ///< rise over run over a metre (two cells, when these are longer), without steps
+  LargeArray<float> step_east;   ///< height of the step to the neighbour with the next x [m]; 0 without one
+  LargeArray<float> step_north;  ///< the same to the neighbour with the next y
 };
 
 /// Neither slopes nor steps are told where the ground of a cell, or of its neighbour, was not observed. A step of less

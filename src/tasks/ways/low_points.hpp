@@ -62,9 +62,9 @@ class LowPoints {
   int rows_in_band_;  ///< at least reach_
   std::size_t most_in_memory_, in_memory_ = 0;
   std::vector<Band> bands_;
-  std::vector<std::uint8_t> had_thing_;  ///< 1: addLeftOut()
-  std::vector<float> surface_;           ///< the heights before
-  std::vector<float> heights_;           ///< of the cell that is refined
+  LargeArray<std::uint8_t> had_thing_;  ///< 1: addLeftOut()
+  LargeArray<float> surface_;           ///< the heights before
+  std::vector<float> heights_;          ///< of the cell that is refined
   TemporaryBytes file_;
 };
 

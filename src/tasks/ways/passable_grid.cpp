@@ -57,7 +57,7 @@ std::optional<std::uint32_t> thingLeft(const TerrainGrid& terrain, std::uint32_t
 void closeCells(const TerrainGrid& terrain, const WayParams& params, const std::vector<bool>& is_left_out,
                 PassableGrid& grid) {
   const std::size_t size = grid.frame.size();
-  std::vector<std::uint8_t> is_thing(size, 0);
+  LargeArray<std::uint8_t> is_thing(size, 0);
   for (std::uint32_t cell = 0; cell < size; ++cell) {
     const auto thing = thingLeft(terrain, cell, is_left_out);
     is_thing[cell] = thing.has_value() ? 1 : 0;
@@ -80,7 +80,7 @@ void closeCells(const TerrainGrid& terrain, const WayParams& params, const std::
 }
 
 /// A metre costs more on slopes, beside things, and far from what the way should stay near.
-void priceCells(const TerrainGrid& terrain, const WayParams& params, const std::vector<std::uint8_t>& near,
+void priceCells(const TerrainGrid& terrain, const WayParams& params, const LargeArray<std::uint8_t>& near,
                 PassableGrid& grid) {
   constexpr double slope_weight = 5, crowded_weight = 0.5, roomy_m = 1;
   const NearestMarked nearest = near.empty() ? NearestMarked{} : nearestMarked(grid.frame, near);
@@ -95,7 +95,7 @@ void priceCells(const TerrainGrid& terrain, const WayParams& params, const std::
 
 }  // namespace
 
-NearestMarked nearestMarked(const GridFrame& frame, const std::vector<std::uint8_t>& marked) {
+NearestMarked nearestMarked(const GridFrame& frame, const LargeArray<std::uint8_t>& marked) {
   constexpr std::uint32_t no_row = 0xffffffffU;
   std::vector<double> line, out;
   std::vector<int> from;
@@ -104,7 +104,7 @@ NearestMarked nearestMarked(const GridFrame& frame, const std::vector<std::uint8
     out.resize(line.size());
     from.resize(line.size());
   };
-  NearestMarked nearest{std::vector<float>(frame.size()), std::vector<std::uint32_t>(frame.size())};
+  NearestMarked nearest{LargeArray<float>(frame.size()), LargeArray<std::uint32_t>(frame.size())};
   resize(frame.rows);
   for (int x = 0; x < frame.columns; ++x) {  // nearest.cell holds the row of the nearest mark of the column
     for (int y = 0; y < frame.rows; ++y) line[y] = marked[frame.index(x, y)] != 0 ? 0 : kInfinite;
@@ -143,7 +143,7 @@ double PassableGrid::stepBetween(std::uint32_t a, std::uint32_t b) const {
 }
 
 PassableGrid passableOf(const TerrainGrid& terrain, const WayParams& params, const std::vector<bool>& is_left_out,
-                        const std::vector<std::uint8_t>& near) {
+                        const LargeArray<std::uint8_t>& near) {
   const std::size_t size = terrain.frame.size();
   PassableGrid grid;
   grid.frame = terrain.frame;

@@ -24,11 +24,11 @@ struct WayParams {
 
 struct PassableGrid {
   GridFrame frame;
-  std::vector<Closure> closure;
-  std::vector<std::uint32_t> blocker;  ///< of Obstacle and TooNarrow: the object, as in TerrainGrid
-  std::vector<float> factor;           ///< cost of a metre, at least 1
-  std::vector<float> clearance_m;      ///< from the cell's centre to the nearest thing's cell
-  std::vector<float> height;           ///< of the ground [m, map]
+  LargeArray<Closure> closure;
+  LargeArray<std::uint32_t> blocker;  ///< of Obstacle and TooNarrow: the object, as in TerrainGrid
+  LargeArray<float> factor;           ///< cost of a metre, at least 1
+  LargeArray<float> clearance_m;      ///< from the cell's centre to the nearest thing's cell
+  LargeArray<float> height;           ///< of the ground [m, map]
   GroundRelief relief;
   double max_step_m = 0;
 
@@ -41,14 +41,14 @@ struct PassableGrid {
 /// `is_left_out`: per object, true when it is to be left out. `near`: per cell, 1 where something is that the way
 /// should stay near; empty: nothing.
 PassableGrid passableOf(const TerrainGrid& terrain, const WayParams& params, const std::vector<bool>& is_left_out,
-                        const std::vector<std::uint8_t>& near);
+                        const LargeArray<std::uint8_t>& near);
 
 /// The distance [cells] from each cell to the nearest marked one, and that cell's number; infinite and the cell itself
 /// without any. Exact Euclidean distance in linear time.
 struct NearestMarked {
-  std::vector<float> distance;
-  std::vector<std::uint32_t> cell;
+  LargeArray<float> distance;
+  LargeArray<std::uint32_t> cell;
 };
-NearestMarked nearestMarked(const GridFrame& frame, const std::vector<std::uint8_t>& marked);
+NearestMarked nearestMarked(const GridFrame& frame, const LargeArray<std::uint8_t>& marked);
 
 }  // namespace cluxel::tasks

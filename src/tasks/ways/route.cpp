@@ -41,11 +41,11 @@ Route routeOf(const PassableGrid& grid, std::vector<std::uint32_t> cells) {
 }
 
 /// Distances [m] from the cells of routes.
-std::vector<float> distancesFrom(const PassableGrid& grid, const std::vector<Route>& routes) {
-  std::vector<std::uint8_t> marked(grid.frame.size(), 0);
+LargeArray<float> distancesFrom(const PassableGrid& grid, const std::vector<Route>& routes) {
+  LargeArray<std::uint8_t> marked(grid.frame.size(), 0);
   for (const Route& route : routes)
     for (const std::uint32_t cell : route.cells) marked[cell] = 1;
-  std::vector<float> distance = nearestMarked(grid.frame, marked).distance;
+  LargeArray<float> distance = nearestMarked(grid.frame, marked).distance;
   for (float& value : distance) value *= static_cast<float>(grid.frame.cell_m);
   return distance;
 }
@@ -55,7 +55,7 @@ std::optional<Route> otherRoute(const PassableGrid& grid, std::uint32_t start, s
                                 const std::vector<Route>& known) {
   constexpr float beside_m = 2;
   constexpr double max_shared = 0.7;
-  const std::vector<float> distance = distancesFrom(grid, known);
+  const LargeArray<float> distance = distancesFrom(grid, known);
   PassableGrid dearer = grid;
   for (std::size_t cell = 0; cell < distance.size(); ++cell)
     if (distance[cell] < beside_m) dearer.factor[cell] *= 2;
@@ -152,14 +152,14 @@ RouteAnswer findRoutes(const PassableGrid& grid, const Eigen::Vector2d& from, co
   return answer;
 }
 
-std::vector<double> walkLengths(const PassableGrid& grid, const Eigen::Vector2d& from, double reach_m) {
-  std::vector<double> length = cheapestWays(grid, openCellNear(grid, from), {.is_priced = false}).cost;
+LargeArray<double> walkLengths(const PassableGrid& grid, const Eigen::Vector2d& from, double reach_m) {
+  LargeArray<double> length = cheapestWays(grid, openCellNear(grid, from), {.is_priced = false}).cost;
   for (double& value : length)
     if (value > reach_m) value = std::numeric_limits<double>::infinity();
   return length;
 }
 
-std::vector<ReachedObject> objectsWithin(const TerrainGrid& terrain, const std::vector<double>& walk_m,
+std::vector<ReachedObject> objectsWithin(const TerrainGrid& terrain, const LargeArray<double>& walk_m,
                                          const std::vector<bool>& is_left_out) {
   constexpr double beside_m = 1;
   const GridFrame& frame = terrain.frame;

@@ -70,7 +70,7 @@ RouteAnswer findRoutes(const PassableGrid& grid, const Eigen::Vector2d& from, co
                        std::size_t count);
 
 /// The cells within a walk of `reach_m`, with the length of the shortest walk; infinite beyond.
-std::vector<double> walkLengths(const PassableGrid& grid, const Eigen::Vector2d& from, double reach_m);
+LargeArray<double> walkLengths(const PassableGrid& grid, const Eigen::Vector2d& from, double reach_m);
 
 /// Objects within reach: the middle of a cell of theirs lies within a metre of that of a cell within the walk. By
 /// length of the walk.
@@ -78,7 +78,7 @@ struct ReachedObject {
   std::uint32_t object = 0;
   double walk_m = 0;
 };
-std::vector<ReachedObject> objectsWithin(const TerrainGrid& terrain, const std::vector<double>& walk_m,
+std::vector<ReachedObject> objectsWithin(const TerrainGrid& terrain, const LargeArray<double>& walk_m,
                                          const std::vector<bool>& is_left_out);
 
 }  // namespace cluxel::tasks

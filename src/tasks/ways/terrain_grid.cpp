@@ -79,7 +79,7 @@ bool isMeasured(const perception::GroundTile& tile, const Eigen::Vector2d& local
 void fillGround(const GroundTiles& ground, const perception::TileGrid& tiles, TerrainGrid& grid) {
   const GridFrame& frame = grid.frame;
   const int reach = static_cast<int>(std::ceil(kSeenReach_m / frame.cell_m));
-  std::vector<std::uint8_t> measured(frame.size(), 0);
+  LargeArray<std::uint8_t> measured(frame.size(), 0);
   for (const auto& [key, tile] : ground) {
     const auto ring = ringIn(ground, key);
     const Eigen::Vector3d corner = tiles.cornerOf(key);
@@ -147,7 +147,7 @@ class PointSorter {
   void add(const mapping::TileOfPoints& tile, const perception::Ring<perception::GroundTile>& ring) {
     const perception::TilePoints& points = tile.points;
     const Eigen::Vector3d corner = grid_.cornerOf(tile.key);
-    std::vector<CellThing> found;
+    LargeArray<CellThing> found;
     for (std::size_t i = 0; i < points.size(); ++i) {
       const auto cell = frame_.cellAt({corner.x() + points.x[i], corner.y() + points.y[i]});
       if (!cell) continue;
@@ -168,7 +168,7 @@ class PointSorter {
   }
 
   /// All things, sorted, each once.
-  std::vector<CellThing> takeThings() {
+  LargeArray<CellThing> takeThings() {
     std::sort(found_.begin(), found_.end());
     found_.erase(std::unique(found_.begin(), found_.end()), found_.end());
     return std::move(found_);
@@ -182,7 +182,7 @@ class PointSorter {
   const GridFrame& frame_;
   const perception::TileGrid grid_;
   std::vector<bool> is_surface_;
-  std::vector<CellThing> found_;
+  LargeArray<CellThing> found_;
 };
 
 }  // namespace
@@ -208,7 +208,7 @@ TerrainGrid terrainOf(const mapping::MapReader& map, const TerrainParams& params
       map, tilesUnder(grid.frame, ground, tiles),
       [&](const mapping::TileOfPoints& tile) { sorter.add(tile, ringIn(ground, tile.key)); }, kCluxelsInMemory);
   sorter.low.refine(grid);
-  const std::vector<CellThing> found = sorter.takeThings();
+  const LargeArray<CellThing> found = sorter.takeThings();
   for (float& height : grid.height)
     if (std::isnan(height)) height = 0;
   grid.first_thing.assign(size + 1, 0);

@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "base/sorting/large_array.hpp"
 #include "mapping/map_reader.hpp"
 
 namespace cluxel::tasks {
@@ -36,10 +37,10 @@ inline constexpr std::uint32_t kUnnamedThing = 0xffffffffU;
 
 struct TerrainGrid {
   GridFrame frame;
-  std::vector<float> height;               ///< of the ground [m, map]
-  std::vector<std::uint8_t> seen;          ///< 1: ground was measured here or within kSeenReach_m
-  std::vector<std::uint32_t> first_thing;  ///< per cell, the first of its things; size() + 1 entries
-  std::vector<std::uint32_t> things;  ///< numbers in MapReader::objects(), or kUnnamedThing; ascending within a cell
+  LargeArray<float> height;               ///< of the ground [m, map]
+  LargeArray<std::uint8_t> seen;          ///< 1: ground was measured here or within kSeenReach_m
+  LargeArray<std::uint32_t> first_thing;  ///< per cell, the first of its things; size() + 1 entries
+  LargeArray<std::uint32_t> things;  ///< numbers in MapReader::objects(), or kUnnamedThing; ascending within a cell
 
   std::span<const std::uint32_t> thingsIn(std::uint32_t cell) const {
     return {things.data() + first_thing[cell], things.data() + first_thing[cell + 1]};

@@ -39,9 +39,9 @@ class ObjectSelector {
   }
 
   /// Throws Error (NotFound) where there is nothing of it.
-  std::vector<std::uint8_t> cells(const std::string& name, const TerrainGrid& terrain,
-                                  const std::vector<bool>& is_left_out) const {
-    std::vector<std::uint8_t> cells(terrain.frame.size(), 0);
+  LargeArray<std::uint8_t> cells(const std::string& name, const TerrainGrid& terrain,
+                                 const std::vector<bool>& is_left_out) const {
+    LargeArray<std::uint8_t> cells(terrain.frame.size(), 0);
     if (mobilityNamed(ontology_, name)) {
       std::vector<bool> marked(map_.objectIds().size(), false);
       mark(name, marked);
@@ -98,7 +98,7 @@ PassableGrid passableIn(const mapping::MapReader& map, const WayRequest& request
 }
 
 PassableGrid passableIn(const mapping::MapReader& map, const TerrainGrid& terrain, const WayRequest& request) {
-  std::vector<std::uint8_t> near;
+  LargeArray<std::uint8_t> near;
   const std::vector<bool> is_left_out = leftOut(map, request);
   if (!request.near.empty()) near = ObjectSelector(map).cells(request.near, terrain, is_left_out);
   return passableOf(terrain, request.params, is_left_out, near);

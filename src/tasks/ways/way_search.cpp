@@ -1,20 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// The usable cells as an implicit graph of Boost, and Dijkstra's algorithm on it.
+// The usable cells as an implicit graph, and Dijkstra's algorithm on it with Boost's queue. That of Boost.Graph holds
+// eight more bytes a cell, which cannot be elsewhere than in memory.
 #include "tasks/ways/way_search.hpp"
 
 #include <algorithm>
 #include <array>
-#include <boost/graph/dijkstra_shortest_paths.hpp>
-#include <boost/graph/graph_traits.hpp>
-#include <boost/graph/two_bit_color_map.hpp>
-#include <boost/iterator/iterator_facade.hpp>
+#include <boost/graph/detail/d_ary_heap.hpp>
 #include <boost/property_map/property_map.hpp>
 #include <cmath>
 #include <cstddef>
 #include <functional>
 #include <limits>
 #include <numeric>
-#include <utility>
 
 namespace cluxel::tasks {
 
@@ -23,48 +20,19 @@ namespace {
 using Cell = std::uint32_t;
 
 struct CellStep {
-  Cell from = 0, to = 0;
+  Cell to = 0;
   double cost = 0;
-  bool operator==(const CellStep&) const = default;
 };
 
 /// The steps from a cell, of which there are eight at most.
 struct CellSteps {
   std::array<CellStep, 8> step;
-  std::ptrdiff_t count = 0;
+  std::size_t count = 0;
 };
 
-class StepIterator
-    : public boost::iterator_facade<StepIterator, const CellStep, boost::random_access_traversal_tag, const CellStep&> {
- public:
-  StepIterator() = default;
-  StepIterator(const CellSteps& steps, std::ptrdiff_t at) : steps_(steps), at_(at) {}
-
- private:
-  friend class boost::iterator_core_access;
-  const CellStep& dereference() const { return steps_.step[static_cast<std::size_t>(at_)]; }
-  bool equal(const StepIterator& other) const { return at_ == other.at_; }
-  void increment() { ++at_; }
-  void decrement() { --at_; }
-  void advance(std::ptrdiff_t count) { at_ += count; }
-  std::ptrdiff_t distance_to(const StepIterator& other) const { return other.at_ - at_; }
-
-  CellSteps steps_;
-  std::ptrdiff_t at_ = 0;
-};
-
-/// The cells of a grid as vertices. Edges are told when they are asked for: to hold them takes 200 bytes a cell.
+/// The cells of a grid as a graph. Edges are told when they are asked for: to hold them takes 200 bytes a cell.
 class CellGraph {
  public:
-  using vertex_descriptor = Cell;
-  using edge_descriptor = CellStep;
-  using out_edge_iterator = StepIterator;
-  using vertices_size_type = std::size_t;
-  using degree_size_type = std::size_t;
-  using directed_category = boost::directed_tag;
-  using edge_parallel_category = boost::disallow_parallel_edge_tag;
-  struct traversal_category : boost::incidence_graph_tag {};
-
   CellGraph(const PassableGrid& grid, const SearchRules& rules) : grid_(grid), rules_(rules) {}
 
   std::size_t size() const { return grid_.frame.size(); }
@@ -84,7 +52,7 @@ class CellGraph {
         if (!mayUse(to) || (is_diagonal && !(isOpen(frame.index(x + dx, y)) && isOpen(frame.index(x, y + dy)))))
           continue;
         if (!grid_.isStepOpen(from, to) && !rules_.closed_cost) continue;
-        steps.step[static_cast<std::size_t>(steps.count++)] = {from, to, costOf(from, to, is_diagonal)};
+        steps.step[steps.count++] = {to, costOf(from, to, is_diagonal)};
       }
     return steps;
   }
@@ -104,61 +72,34 @@ class CellGraph {
   const SearchRules& rules_;
 };
 
-// What Boost asks of a graph.
-[[maybe_unused]] std::size_t num_vertices(const CellGraph& graph) {
-  return graph.size();
-}
-[[maybe_unused]] std::pair<StepIterator, StepIterator> out_edges(Cell cell, const CellGraph& graph) {
-  const CellSteps steps = graph.stepsFrom(cell);
-  return {StepIterator(steps, 0), StepIterator(steps, steps.count)};
-}
-[[maybe_unused]] std::size_t out_degree(Cell cell, const CellGraph& graph) {
-  return static_cast<std::size_t>(graph.stepsFrom(cell).count);
-}
-[[maybe_unused]] Cell source(const CellStep& step, const CellGraph&) {
-  return step.from;
-}
-[[maybe_unused]] Cell target(const CellStep& step, const CellGraph&) {
-  return step.to;
-}
-
-/// The cost of an edge, which it holds itself.
-struct CostOfStep {
-  using key_type = CellStep;
-  using value_type = double;
-  using reference = double;
-  using category = boost::readable_property_map_tag;
-};
-[[maybe_unused]] double get(const CostOfStep&, const CellStep& step) {
-  return step.cost;
-}
-
-/// Ends the search when the goal's cost is known.
-struct GoalReached {};
-struct StopAtGoal : boost::default_dijkstra_visitor {
-  explicit StopAtGoal(std::optional<Cell> goal_cell) : goal(goal_cell) {}
-  void examine_vertex(Cell cell, const CellGraph&) const {
-    if (cell == goal) throw GoalReached();
-  }
-  std::optional<Cell> goal;
-};
-
 }  // namespace
 
 CheapestWays cheapestWays(const PassableGrid& grid, std::uint32_t start, const SearchRules& rules) {
   constexpr double infinite = std::numeric_limits<double>::infinity();
   const CellGraph graph(grid, rules);
-  CheapestWays ways{std::vector<double>(graph.size(), infinite), std::vector<std::uint32_t>(graph.size())};
+  CheapestWays ways{LargeArray<double>(graph.size(), infinite), LargeArray<Cell>(graph.size())};
   std::iota(ways.before.begin(), ways.before.end(), 0U);
   if (!graph.mayUse(start)) return ways;
-  ways.cost[start] = 0;
+  LargeArray<std::uint32_t> place_in_queue(graph.size(), 0);
   const boost::typed_identity_property_map<Cell> index;
-  try {
-    boost::dijkstra_shortest_paths_no_init(graph, start, boost::make_iterator_property_map(ways.before.begin(), index),
-                                           boost::make_iterator_property_map(ways.cost.begin(), index), CostOfStep{},
-                                           index, std::less<double>(), std::plus<double>(), 0.0, StopAtGoal(rules.goal),
-                                           boost::make_two_bit_color_map(graph.size(), index));
-  } catch (const GoalReached&) {  // the cost of the goal is known
+  auto cost = boost::make_iterator_property_map(ways.cost.begin(), index);
+  auto place = boost::make_iterator_property_map(place_in_queue.begin(), index);
+  boost::d_ary_heap_indirect<Cell, 4, decltype(place), decltype(cost), std::less<double>> queue(cost, place);
+  ways.cost[start] = 0;
+  queue.push(start);
+  while (!queue.empty()) {
+    const Cell from = queue.top();
+    queue.pop();
+    if (from == rules.goal) break;
+    const CellSteps steps = graph.stepsFrom(from);
+    for (std::size_t i = 0; i < steps.count; ++i) {
+      const auto& [to, step_cost] = steps.step[i];
+      const double before = ways.cost[to], now = ways.cost[from] + step_cost;
+      if (now >= before) continue;  // so it is for cells that left the queue, too: no step has a negative cost
+      ways.cost[to] = now;
+      ways.before[to] = from;
+      std::isinf(before) ? queue.push(to) : queue.update(to);
+    }
   }
   return ways;
 }

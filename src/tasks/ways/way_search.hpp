@@ -21,8 +21,8 @@ struct SearchRules {
 
 /// By cell; infinite where no way leads.
 struct CheapestWays {
-  std::vector<double> cost;
-  std::vector<std::uint32_t> before;  ///< the cell before on the way; the cell itself at the start
+  LargeArray<double> cost;
+  LargeArray<std::uint32_t> before;  ///< the cell before on the way; the cell itself at the start
 };
 
 /// Ways lead to the eight neighbours; a diagonal needs both cells beside it. Cost: O(cells log cells).
