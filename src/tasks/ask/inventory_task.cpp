@@ -86,9 +86,9 @@ TaskAnswer runNextView(const TaskContext& context, const TaskValues& values) {
     std::array<char, 96> line{};
     std::snprintf(line.data(), line.size(), "%.1f m2 that was not observed comes into sight", view.area_m2);
     answer.rows.back().why.emplace_back(line.data());
-    for (const std::uint32_t object : view.objects) {
-      std::snprintf(line.data(), line.size(), ", confidence %.2f", map.objects()[object].confidence);
-      answer.rows.back().why.push_back("doubtful: " + thingName(map, object) + line.data());
+    for (std::size_t o = 0; o < view.objects.size(); ++o) {
+      std::snprintf(line.data(), line.size(), ", confidence %.2f", view.confidences[o]);
+      answer.rows.back().why.push_back("doubtful: " + thingName(map, view.objects[o]) + line.data());
     }
   }
   std::array<char, 128> note{};

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "mapping/facts/object_geometry.hpp"
+#include "mapping/regions/whole_objects.hpp"
 #include "rdf/map_iris.hpp"
 #include "rdf/vocabulary.hpp"
 #include "tasks/ask/task_table.hpp"
@@ -41,7 +42,7 @@ std::optional<std::size_t> columnNamed(const std::vector<QueryColumn>& columns, 
 /// The number of each object by its IRI.
 std::map<std::string, std::uint32_t> objectsByIri(const mapping::MapReader& map) {
   std::map<std::string, std::uint32_t> by_iri;
-  for (std::uint32_t i = 0; i < map.objects().size(); ++i) by_iri[rdf::iriOfObject(map.objects()[i].id)] = i;
+  for (std::uint32_t i = 0; i < map.objectIds().size(); ++i) by_iri[rdf::iriOfObject(map.objectIds()[i])] = i;
   return by_iri;
 }
 
@@ -52,16 +53,35 @@ std::optional<std::uint32_t> objectOfRow(const TaskRow& row, const std::map<std:
   return std::nullopt;
 }
 
-TaskShape shapeOfRow(const mapping::MapReader& map, const TaskAnswer& answer, const TaskRow& row,
-                     std::optional<std::uint32_t> object) {
+/// The place that the columns x and y of a row say.
+std::optional<Eigen::Vector2d> placeInRow(const TaskAnswer& answer, const TaskRow& row) {
   const auto x = columnNamed(answer.columns, "x"), y = columnNamed(answer.columns, "y");
-  if (x && y) {
-    const double *px = std::get_if<double>(&row.cells[*x]), *py = std::get_if<double>(&row.cells[*y]);
-    if (px != nullptr && py != nullptr) return {TaskShape::Kind::Point, {{*px, *py}}};
+  if (!x || !y) return std::nullopt;
+  const double *px = std::get_if<double>(&row.cells[*x]), *py = std::get_if<double>(&row.cells[*y]);
+  if (px == nullptr || py == nullptr) return std::nullopt;
+  return Eigen::Vector2d(*px, *py);
+}
+
+/// Gives each row its place: the one that it says, or that of its object. Objects are read region by region.
+void placeRows(const mapping::MapReader& map, const std::vector<std::optional<std::uint32_t>>& object_of_row,
+               TaskAnswer& answer) {
+  std::vector<bool> is_wanted(map.objectIds().size(), false);
+  std::multimap<std::uint32_t, std::size_t> rows_of_object;
+  for (std::size_t i = 0; i < answer.rows.size(); ++i) {
+    if (const auto place = placeInRow(answer, answer.rows[i])) {
+      answer.rows[i].shape = {TaskShape::Kind::Point, {*place}};
+    } else if (const auto object = object_of_row[i]) {
+      rows_of_object.emplace(*object, i);
+      is_wanted[*object] = true;
+    }
   }
-  if (!object) return {};
-  const auto cluxels = mapping::cluxelsOf(map.objects()[*object]);
-  return {TaskShape::Kind::Point, {mapping::geometryOf(map.scene().cluxels, cluxels).centroid.head<2>()}};
+  if (rows_of_object.empty()) return;
+  mapping::forEachWholeObject(map, is_wanted, [&](const mapping::WholeObject& whole) {
+    const auto cluxels = mapping::cluxelsOf(whole.object);
+    const Eigen::Vector2d place = mapping::geometryOf(whole.cluxels, cluxels).centroid.head<2>();
+    const auto [first, end] = rows_of_object.equal_range(whole.number);
+    for (auto row = first; row != end; ++row) answer.rows[row->second].shape = {TaskShape::Kind::Point, {place}};
+  });
 }
 
 std::string measuredText(const nlohmann::json& step) {
@@ -113,14 +133,15 @@ TaskAnswer answerQuestionTask(const Question& question, const TaskContext& conte
   const auto by_iri = objectsByIri(context.map);
   const std::vector<std::string> explanations =
       context.with_reasons ? explainObjects(context.map) : std::vector<std::string>();
+  std::vector<std::optional<std::uint32_t>> object_of_row;
   for (std::size_t i = 0; i < table.row_count; ++i) {
     TaskRow row;
     for (std::size_t c = 0; c < table.variables.size(); ++c) row.cells.push_back(cellOf(table.at(i, c)));
-    const auto object = objectOfRow(row, by_iri);
-    row.shape = shapeOfRow(context.map, answer, row, object);
+    const auto object = object_of_row.emplace_back(objectOfRow(row, by_iri));
     if (object && context.with_reasons) row.why = reasonLines(explanations[*object]);
     answer.rows.push_back(std::move(row));
   }
+  placeRows(context.map, object_of_row, answer);
   return answer;
 }
 

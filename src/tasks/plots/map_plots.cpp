@@ -38,9 +38,9 @@ std::vector<PlotSpread> heightsByClass(const mapping::MapReader& map) {
   std::unordered_map<std::string, double> height_of;
   for (std::size_t i = 0; i < rows.row_count; ++i) height_of[textOf(rows, i, 0)] = numberOf(rows, i, 1);
   std::map<std::string, std::vector<double>> by_class;
-  for (const rules::SemanticObject& object : map.objects()) {
-    const auto height = height_of.find(rdf::iriOfObject(object.id));
-    if (height != height_of.end()) by_class[map.classNames().nameOf(object.class_iri)].push_back(height->second);
+  for (std::size_t i = 0; i < map.objectIds().size(); ++i) {
+    const auto height = height_of.find(rdf::iriOfObject(map.objectIds()[i]));
+    if (height != height_of.end()) by_class[map.classNames().nameOf(map.objectClasses()[i])].push_back(height->second);
   }
   std::vector<PlotSpread> spreads;
   for (auto& [name, values] : by_class) spreads.push_back(spreadOf(name, std::move(values)));

@@ -19,6 +19,7 @@ struct NextView {
   SearchStop stop;
   double area_m2 = 0;                  ///< of unobserved ground that comes into sight
   std::vector<std::uint32_t> objects;  ///< doubtful ones that come into sight, numbers in MapReader::objects()
+  std::vector<double> confidences;     ///< parallel to `objects`
 };
 
 struct NextViewAnswer {

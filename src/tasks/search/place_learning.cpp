@@ -10,6 +10,7 @@
 #include <set>
 
 #include "mapping/facts/object_geometry.hpp"
+#include "mapping/regions/whole_objects.hpp"
 #include "rdf/vocabulary.hpp"
 #include "tasks/named_class.hpp"
 #include "tasks/objects_of_class.hpp"
@@ -29,13 +30,17 @@ struct PlacedObject {
 };
 
 std::vector<PlacedObject> placedObjects(const mapping::MapReader& map, const rdf::OntologyView& ontology) {
+  const std::vector<std::string>& classes = map.objectClasses();
+  std::vector<bool> is_thing;
+  for (const std::string& class_iri : classes)
+    is_thing.push_back(!ontology.isA(class_iri, rdf::vocabulary::clx("Surface")));
   std::vector<PlacedObject> placed;
-  for (std::uint32_t i = 0; i < map.objects().size(); ++i) {
-    const rules::SemanticObject& object = map.objects()[i];
-    if (ontology.isA(object.class_iri, rdf::vocabulary::clx("Surface"))) continue;
-    const auto cluxels = mapping::cluxelsOf(object);
-    placed.push_back({i, object.class_iri, mapping::geometryOf(map.scene().cluxels, cluxels).centroid.head<2>()});
-  }
+  mapping::forEachWholeObject(map, is_thing, [&](const mapping::WholeObject& whole) {
+    const auto cluxels = mapping::cluxelsOf(whole.object);
+    placed.push_back(
+        {whole.number, classes[whole.number], mapping::geometryOf(whole.cluxels, cluxels).centroid.head<2>()});
+  });
+  std::sort(placed.begin(), placed.end(), [](const auto& a, const auto& b) { return a.number < b.number; });
   return placed;
 }
 
@@ -97,7 +102,7 @@ void PlaceLearner::add(const mapping::MapReader& map) {
   terrain_params.cell_m = params_.cell_m;
   const TerrainGrid terrain = terrainOf(map, terrain_params);
   const std::vector<PlacedObject> objects = placedObjects(map, ontology);
-  const std::vector<bool> none_left_out(map.objects().size(), false);  // also what is gone now stood at its place
+  const std::vector<bool> none_left_out(map.objectIds().size(), false);  // also what is gone now stood at its place
   ++maps_;
   std::vector<Example> examples(objects.size());
   std::set<std::string> near_classes;
@@ -105,7 +110,7 @@ void PlaceLearner::add(const mapping::MapReader& map) {
   for (const rdf::OntologyClass& known : ontology.classes)
     if (ontology.isA(known.iri, rdf::vocabulary::clx("Place"))) near_classes.insert(known.iri);
   for (const std::string& near_class : near_classes) {
-    NearClass near{std::vector<bool>(map.objects().size(), false), {}};
+    NearClass near{std::vector<bool>(map.objectIds().size(), false), {}};
     for (const std::uint32_t object : objectsOfClass(map, near_class)) near.is_of_class[object] = true;
     near.nearest = nearestMarked(terrain.frame, cellsWith(map, terrain, near_class, near.is_of_class, none_left_out));
     std::vector<double> distance_m;
