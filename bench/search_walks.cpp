@@ -125,7 +125,7 @@ double sweepLength(Walker& walker, bool spares_known) {
   std::vector<std::uint8_t> given_up(size, 0);
   while (!walker.isDone() && walker.length_m() < kLongest_m && near_m > world.params().cell_m) {
     const tasks::CheapestWays ways = cheapestWays(walker.belief(), walker.at(), {.is_priced = false});
-    const std::vector<double>& walk_m = ways.cost;
+    const auto& walk_m = ways.cost;
     std::uint32_t goal = 0;
     double best = kInfinite;
     for (std::uint32_t cell = 0; cell < size; ++cell)

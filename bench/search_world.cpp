@@ -87,7 +87,7 @@ void SearchWorld::rasterise() {
   constexpr double pitch_m = 0.2, lowest_m = 0.2, highest_m = 1.8, eye_band_m = 0.3;
   height_.assign(frame_.size(), 0.0F);
   closure_.assign(frame_.size(), Closure::Open);
-  sight_ = {frame_, std::vector<std::uint8_t>(frame_.size(), 0)};
+  sight_ = {frame_, LargeArray<std::uint8_t>(frame_.size(), 0)};
   for (const simulation::CampusMesh& mesh : campus_.meshes)
     for (const auto& corner : mesh.triangles)
       if (isGround(mesh.label))
@@ -161,7 +161,7 @@ void SearchWorld::chooseTargets() {
     if (mapping::localName(map_->objects()[i].class_iri) == params_.class_name)
       known.push_back(tasks::placeNamed(*map_, map_->objects()[i].id.hex()));
   const tasks::PassableGrid grid = trueGrid();
-  const std::vector<double> walk_m = cheapestWays(grid, openCellNear(grid, start()), {.is_priced = false}).cost;
+  const auto walk_m = cheapestWays(grid, openCellNear(grid, start()), {.is_priced = false}).cost;
   for (std::size_t i = 0; i < campus_.objects.size(); ++i) {
     const simulation::CampusObject& object = campus_.objects[i];
     if (object.class_number < 0 || names[static_cast<std::size_t>(object.class_number)] != params_.class_name) continue;

@@ -37,7 +37,7 @@ class SearchWorld {
   const mapping::MapReader& map() const { return *map_; }
   /// The grid over the site; true closure: Thing where something stands or the site ends, else Open.
   const tasks::GridFrame& frame() const { return frame_; }
-  const std::vector<tasks::Closure>& closure() const { return closure_; }
+  const LargeArray<tasks::Closure>& closure() const { return closure_; }
   const tasks::SightGrid& sight() const { return sight_; }
   /// Of the class, not in the map, and visible from reachable ground.
   const std::vector<SearchTarget>& targets() const { return targets_; }
@@ -62,7 +62,7 @@ class SearchWorld {
   std::unique_ptr<mapping::MapReader> map_;
   tasks::GridFrame frame_;
   std::vector<float> height_;
-  std::vector<tasks::Closure> closure_;
+  LargeArray<tasks::Closure> closure_;
   tasks::SightGrid sight_;
   std::vector<SearchTarget> targets_;
   std::size_t objects_of_class_ = 0;
