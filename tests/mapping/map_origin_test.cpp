@@ -28,6 +28,8 @@ namespace fs = std::filesystem;
 const Eigen::Vector3d kSite_m(563'012.3, 5'932'007.7, 31.4);
 /// Whole tiles.
 const Eigen::Vector3d kReference_m(563'008, 5'932'000, 16);
+/// Properties whose values are heights in the map frame.
+const std::vector<std::string> kHeights = {"z", "minZ", "maxZ"};
 
 std::string textOf(const Eigen::Vector3d& v) {
   std::ostringstream text;
@@ -198,6 +200,34 @@ TEST_F(MapOrigin, ChangesNoObject) {
   for (const Eigen::Vector3d& origin : otherOrigins()) {
     SCOPED_TRACE(textOf(origin));
     expectSame(here, holdingOf(built(scansWith(origin))));
+  }
+}
+
+/// N-Quads with heights in the map frame raised, without the height of the origin.
+std::string raised(const std::string& quads, double rise_m) {
+  std::istringstream lines(quads);
+  std::string all;
+  for (std::string line; std::getline(lines, line); all += line + "\n") {
+    if (line.find(vocabulary::clx("originZ")) != std::string::npos) line.clear();
+    for (const std::string& property : kHeights) {
+      const std::string predicate = " <" + vocabulary::clx(property) + "> \"";
+      const std::size_t begin = line.find(predicate);
+      if (begin == std::string::npos) continue;
+      const std::size_t value = begin + predicate.size(), end = line.find('"', value);
+      std::ostringstream height;
+      height << std::fixed << std::setprecision(6) << std::stod(line.substr(value, end - value)) + rise_m;
+      line.replace(value, end - value, height.str());
+    }
+  }
+  return all;
+}
+
+TEST_F(MapOrigin, LowerByWholeTilesRaisesHeightsAndChangesNothingElse) {
+  const std::string here = raised(canonicalText(built(scansWith(kReference_m))), 0);
+  EXPECT_NE(here, raised(here, 1));
+  for (const double rise_m : {16.0, 304.0, 3008.0}) {
+    const fs::path map = built(scansWith(kReference_m - Eigen::Vector3d(0, 0, rise_m)));
+    EXPECT_TRUE(raised(canonicalText(map), -rise_m) == here) << rise_m;
   }
 }
 

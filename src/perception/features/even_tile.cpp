@@ -62,7 +62,8 @@ std::optional<Eigen::Vector3d> evenPlane(const CellPoints& sum) {
 
 /// The cells of a tile and of a margin around it.
 struct PaddedGround {
-  std::vector<float> height;        ///< of the ground [m, map]
+  double base_m = 0;                ///< near the ground [m, map]
+  std::vector<float> height;        ///< of the ground above the base [m]
   std::vector<CellPoints> moments;  ///< of points of the ground
   std::vector<double> above;        ///< the same points' heights above the ground, summed [m]
   std::vector<std::uint8_t> thing;
@@ -70,12 +71,12 @@ struct PaddedGround {
 
 PaddedGround gatherGround(const Ring<TilePoints>& points, const Ring<GroundTile>& ground) {
   constexpr std::size_t count = static_cast<std::size_t>(kPaddedCells) * kPaddedCells;
-  PaddedGround all{std::vector<float>(count), std::vector<CellPoints>(count), std::vector<double>(count, 0),
+  const double base = ground[kRingCentre]->height.front();
+  PaddedGround all{base, std::vector<float>(count), std::vector<CellPoints>(count), std::vector<double>(count, 0),
                    std::vector<std::uint8_t>(count, 0)};
   for (int y = -kMargin; y < kEvenCellsPerTile + kMargin; ++y)
     for (int x = -kMargin; x < kEvenCellsPerTile + kMargin; ++x)
-      all.height[paddedIndex(x, y)] = static_cast<float>(groundHeightAt(ground, cellCentre(x), cellCentre(y)));
-  const double base = ground[kRingCentre]->height.front();
+      all.height[paddedIndex(x, y)] = static_cast<float>(groundHeightAt(ground, cellCentre(x), cellCentre(y)) - base);
   for (int r = 0; r < static_cast<int>(points.size()); ++r) {
     const TilePoints* tile = points[static_cast<std::size_t>(r)];
     if (tile == nullptr) continue;
@@ -89,7 +90,7 @@ PaddedGround gatherGround(const Ring<TilePoints>& points, const Ring<GroundTile>
       const int x = first_x + at(tile->x[i]), y = first_y + at(tile->y[i]);
       if (!is_near(x) || !is_near(y)) continue;
       const std::size_t cell = paddedIndex(x, y);
-      const double above = static_cast<double>(tile->z[i]) - all.height[cell];
+      const double above = tile->z[i] - base - all.height[cell];
       if (std::abs(above) < kThingBottom_m) {
         all.moments[cell].all.add(tile->x[i] + shift.x(), tile->y[i] + shift.y(), tile->z[i] - base);
         all.above[cell] += above;
@@ -107,7 +108,7 @@ PaddedGround gatherGround(const Ring<TilePoints>& points, const Ring<GroundTile>
 }
 
 float rounded(double height_m) {
-  return static_cast<float>(std::round(height_m / kEvenStep_m) * kEvenStep_m);
+  return static_cast<float>(std::floor(height_m / kEvenStep_m + 0.5) * kEvenStep_m);
 }
 
 /// Heights, measured cells and things of the tile itself.
@@ -119,7 +120,7 @@ void fillCells(const PaddedGround& all, EvenTile& tile) {
       const double n = all.moments[cell].all.n;
       tile.measured.push_back(n > 0 ? 1 : 0);
       tile.thing.push_back(all.thing[cell]);
-      tile.height.push_back(rounded(all.height[cell] + (n >= least_points ? all.above[cell] / n : 0)));
+      tile.height.push_back(rounded(all.base_m + all.height[cell] + (n >= least_points ? all.above[cell] / n : 0)));
     }
 }
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "perception/clustering/local_steps.hpp"
 #include "perception/features/ground_window.hpp"
@@ -18,7 +19,19 @@ constexpr int kTrendReach = 6;
 /// Relative to the trend, ground is less steep and less rough by this factor.
 constexpr double kTrendFactor = 0.4;
 
-HeightWindow windowOf(const Ring<CluxelTile>& ring) {
+/// A multiple of the tile size below all stacks of the ring [m, map]. Heights above it are small, so that sums and
+/// means of them as floats do not depend on how high the ground lies.
+double baseOf(const Ring<CluxelTile>& ring) {
+  float lowest = std::numeric_limits<float>::infinity();
+  for (const CluxelTile* tile : ring)
+    if (tile != nullptr)
+      for (const CellStack& stack : tile->stacks)
+        if (stack.count > 0) lowest = std::min(lowest, stack.low);
+  return std::isfinite(lowest) ? kTileSize_m * std::floor(double{lowest} / kTileSize_m) : 0;
+}
+
+/// Heights above `base_m`.
+HeightWindow windowOf(const Ring<CluxelTile>& ring, double base_m) {
   HeightWindow window(3 * kStacksPerTile);
   for (int r = 0; r < 9; ++r) {
     const CluxelTile* tile = ring[static_cast<std::size_t>(r)];
@@ -27,7 +40,7 @@ HeightWindow windowOf(const Ring<CluxelTile>& ring) {
       for (int x = 0; x < kStacksPerTile; ++x) {
         const CellStack& stack = tile->stacks[static_cast<std::size_t>(y * kStacksPerTile + x)];
         const std::size_t cell = window.at(r % 3 * kStacksPerTile + x, r / 3 * kStacksPerTile + y);
-        window.height[cell] = stack.count == 0 ? HeightWindow::kUnknown : stack.low;
+        window.height[cell] = stack.count == 0 ? HeightWindow::kUnknown : static_cast<float>(stack.low - base_m);
       }
   }
   return window;
@@ -64,7 +77,8 @@ void describe(GroundParams& params, ParameterVisitor& visitor) {
 }
 
 GroundTile groundOf(const Ring<CluxelTile>& ring, const GroundParams& params) {
-  HeightWindow window = windowOf(ring);
+  const double base_m = baseOf(ring);
+  HeightWindow window = windowOf(ring, base_m);
   dropSunkenCells(window, kStackSize_m, params.steepest, params.step_m);
   dropRaisedCells(window, kStackSize_m, params.steepest, params.step_m);
   dropRaisedAgainstTrend(window, params);
@@ -73,7 +87,7 @@ GroundTile groundOf(const Ring<CluxelTile>& ring, const GroundParams& params) {
   for (int y = 0; y < kStacksPerTile; ++y)
     for (int x = 0; x < kStacksPerTile; ++x) {
       const std::size_t cell = window.at(kStacksPerTile + x, kStacksPerTile + y);
-      tile.height.push_back(toHeightStep(height[cell]));
+      tile.height.push_back(toHeightStep(base_m + height[cell]));
       tile.source.push_back(window.knows(cell) ? GroundSource::Measured : GroundSource::Filled);
     }
   return tile;

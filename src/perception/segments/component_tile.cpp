@@ -11,6 +11,7 @@
 #include "base/convex_hull.hpp"
 #include "base/disjoint_sets.hpp"
 #include "perception/clustering/fast_floor.hpp"
+#include "perception/clustering/local_steps.hpp"
 #include "perception/simd_vector.hpp"
 
 namespace cluxel::perception {
@@ -95,10 +96,15 @@ class CellCollector {
   void append(const TilePoints& points, std::span<const std::uint32_t> members, const std::vector<float>& heights,
               std::vector<FootprintCell>& cells) {
     const std::size_t first = cells.size();
-    for (const std::uint32_t i : members) add(points.at(i), heights[i], cells);
+    sum_z_.clear();
+    for (const std::uint32_t i : members) {
+      const std::size_t cell = add(points.at(i), heights[i], cells);
+      sum_z_.resize(cells.size() - first, 0);
+      sum_z_[cell - first] += points.z[i];
+    }
     for (std::size_t c = first; c < cells.size(); ++c) {
       slot_[index(cells[c])] = kNoSlot;
-      cells[c].mean_z /= static_cast<float>(cells[c].count);
+      cells[c].mean_z = toHeightStep(sum_z_[c - first] / cells[c].count);
     }
     std::sort(cells.begin() + static_cast<std::ptrdiff_t>(first), cells.end(),
               [](const FootprintCell& a, const FootprintCell& b) { return index(a) < index(b); });
@@ -110,7 +116,8 @@ class CellCollector {
     return static_cast<std::size_t>(cell.y) * kFootprintCellsPerTile + cell.x;
   }
 
-  void add(const Eigen::Vector3f& point, float height, std::vector<FootprintCell>& cells) {
+  /// The place of the point's cell.
+  std::size_t add(const Eigen::Vector3f& point, float height, std::vector<FootprintCell>& cells) {
     FootprintCell fresh;
     fresh.x = footprintCell(point.x());
     fresh.y = footprintCell(point.y());
@@ -123,13 +130,14 @@ class CellCollector {
     }
     FootprintCell& cell = cells[slot];
     ++cell.count;
-    cell.mean_z += point.z();
     widen(cell.min, cell.max, point);
     cell.lowest = std::min(cell.lowest, height);
     cell.highest = std::max(cell.highest, height);
+    return slot;
   }
 
   std::vector<std::uint32_t> slot_;
+  std::vector<double> sum_z_;  ///< of the points of each cell [m]
 };
 
 /// 16 directions over the full circle, four per SIMD vector.
