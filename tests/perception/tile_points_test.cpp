@@ -61,6 +61,19 @@ TEST(TilePoints, EveryPointOfAScanLiesInExactlyOneSegmentAndNearItsMapPlace) {
   EXPECT_TRUE(std::all_of(seen.begin(), seen.end(), [](int count) { return count == 1; }));
 }
 
+TEST(TilePoints, ThinnedHigherByWholeTilesAreTheSame) {
+  for (const double voxel_m : {0.05, 0.07, 0.3}) {
+    const auto there = tilesOf({scanOf(streetPoints(3))}, {.voxel_m = voxel_m});
+    for (const double rise_m : {16.0, -48.0, 3008.0}) {
+      Scan scan = scanOf(streetPoints(3));
+      scan.T_map_sensor.pretranslate(Eigen::Vector3d(0, 0, rise_m));
+      const auto here = tilesOf({scan}, {.voxel_m = voxel_m});
+      ASSERT_EQ(here.size(), there.size());
+      for (const auto& [key, points] : here) EXPECT_EQ(points.point, there.at(key).point) << voxel_m << ' ' << rise_m;
+    }
+  }
+}
+
 /// Relative to the corner at -16 m they round to the tile's upper edge, though they belong to that tile.
 TEST(TilePoints, PointsJustBelowZeroStayInTheirTile) {
   Scan scan = scanOf({{-1e-20F, -1e-20F, 0.5F},

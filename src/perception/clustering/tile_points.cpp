@@ -17,14 +17,16 @@ namespace {
 /// The voxel of a local point as an integer that sorts by x, then y, then z. Wide enough for voxels of 1 cm.
 class VoxelKeys {
  public:
-  explicit VoxelKeys(double voxel_m) : per_m_(1.0 / voxel_m) {}
+  explicit VoxelKeys(double voxel_m)
+      : per_m_(1.0 / voxel_m), layers_per_m_(std::round(kTileSize_m / voxel_m) / kTileSize_m) {}
   std::uint64_t operator()(float x, float y, float z) const {
-    return cell(x) << 36U | cell(y) << 24U | cell(z + kMaxHeight_m + 1.0);
+    return cell(x * per_m_) << 36U | cell(y * per_m_) << 24U | cell((z + kMaxHeight_m + kTileSize_m) * layers_per_m_);
   }
 
  private:
-  std::uint64_t cell(double value_m) const { return static_cast<std::uint64_t>(std::max(0.0, value_m * per_m_)); }
+  static std::uint64_t cell(double voxels) { return static_cast<std::uint64_t>(std::max(0.0, voxels)); }
   double per_m_;
+  double layers_per_m_;  ///< a whole number of layers is as high as a tile is wide, as in CellKeys
 };
 
 /// The concatenated points of all parts, each with its index into the scans.
