@@ -7,7 +7,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include "perception/rays_of_scan.hpp"
@@ -25,6 +27,10 @@ Eigen::Vector3d endOf(const Eigen::Vector3d& start, const Eigen::Vector3d& way, 
     if (to_wall > 0 && there.z() < kTop_m && there.y() > -4) range_m = std::min(range_m, to_wall);
   }
   return start + range_m * way;
+}
+
+bool looksAt(const ScanRays& rays, const StandingPlace& place, double view_m) {
+  return LookingRays(rays, view_m).lookAt(place);
 }
 
 /// From all rays, without an index. Rays that start within `view_m` count, those of each of the starts by themselves.
@@ -78,6 +84,79 @@ TEST(StandingPlace, IsLookedAtAsAllRaysOneByOneTell) {
   }
   EXPECT_GT(found[0], 100);
   EXPECT_GT(found[1], 100);
+}
+
+/// As a scanner gives them that is carried along: each ray starts elsewhere, some of them twice.
+std::vector<Ray> raysFromEverywhere(std::size_t count, double size_m, std::mt19937& random) {
+  std::uniform_real_distribution<double> place(-size_m / 2, size_m / 2), height(0.5, 2), around(-3.1415, 3.1415);
+  std::normal_distribution<double> up(0, 0.2);
+  std::vector<Ray> rays;
+  while (rays.size() < count) {
+    const auto rounded = [](double at) { return std::round(at * 4) / 4; };  // none is taken for a neighbour's start
+    const Eigen::Vector3d start(rounded(place(random)), rounded(place(random)), rounded(height(random)));
+    const double azimuth = around(random), elevation = up(random);
+    const Eigen::Vector3d way(std::cos(azimuth), std::sin(azimuth), std::tan(elevation));
+    rays.push_back({start, endOf(start, way, std::abs(20 * up(random)) + 0.4)});
+    if (rays.size() % 9 == 0) rays.push_back({start, endOf(start, -way, 30)});
+  }
+  return rays;
+}
+
+/// From all bundles in view, without an index; none has so many rays that missing ones tell.
+bool isLookedAtByAny(const ScanRays& scan, const StandingPlace& place, double view_m) {
+  constexpr double square_m = 2;
+  RayParams measured;
+  measured.near_m = 0.5;
+  std::map<std::pair<double, double>, std::array<std::uint64_t, 2>> passed_stopped;
+  for (const RayBundle& bundle : scan.bundles()) {
+    const Eigen::Vector3d start = bundle.origin();
+    if ((start - place.foot).head<2>().norm() > view_m) continue;
+    auto& [passed, stopped] = passed_stopped[{std::floor(start.x() / square_m), std::floor(start.y() / square_m)}];
+    for (const Eigen::Vector3d& point : pointsOf(place)) {
+      if (bundle.raysNear(point, measured).counts.ended > 0) return true;
+      if (point == place.foot) continue;
+      const RaysNear near = bundle.raysNear(point, {});
+      passed += near.counts.passed, stopped += near.others;
+    }
+  }
+  return std::any_of(passed_stopped.begin(), passed_stopped.end(), [](const auto& of_square) {
+    return of_square.second[0] >= 3 && of_square.second[1] <= of_square.second[0];
+  });
+}
+
+TEST(StandingPlace, IsLookedAtByRaysThatStartEverywhereAsAllOfThemTell) {
+  std::mt19937 random(5);
+  const ScanRays scan(scanOfRays(raysFromEverywhere(15'000, 40, random)));
+  std::uniform_real_distribution<double> at(-22, 22), height(0, 3);
+  std::array<int, 2> found{};
+  for (const double view_m : {0.3, 2.0, 7.0, 25.0, 1e9}) {
+    const LookingRays looking(scan, view_m);
+    for (int i = 0; i < 300; ++i) {
+      const StandingPlace place{{at(random), at(random), 2 * height(random)}, height(random)};
+      const bool expected = isLookedAtByAny(scan, place, view_m);
+      ASSERT_EQ(looking.lookAt(place), expected) << place.foot.transpose() << ", " << place.height_m << ", " << view_m;
+      ++found[expected ? 1 : 0];
+    }
+  }
+  EXPECT_GT(found[0], 100);
+  EXPECT_GT(found[1], 100);
+}
+
+TEST(StandingPlace, AsksFewOfTheRaysThatStartEverywhere) {
+  std::mt19937 random(6);
+  const ScanRays scan(scanOfRays(raysFromEverywhere(20'000, 200, random)));
+  const LookingRays looking(scan, 25);
+  std::size_t asked = 0, in_view = 0;
+  std::uniform_real_distribution<double> at(-100, 100);
+  for (int i = 0; i < 100; ++i) {
+    const StandingPlace place{{at(random), at(random), 0}, 1};
+    asked += looking.bundlesNear(place).size();
+    in_view += static_cast<std::size_t>(
+        std::count_if(scan.bundles().begin(), scan.bundles().end(),
+                      [&](const RayBundle& bundle) { return (bundle.origin() - place.foot).head<2>().norm() <= 25; }));
+  }
+  EXPECT_GT(asked, 0U);
+  EXPECT_LT(5 * asked, in_view);
 }
 
 /// Rays to a wall 12 m away, in steps of a decimetre, and a lower one that hides what is below `hidden_m`.

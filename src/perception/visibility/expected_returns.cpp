@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t kRangeClasses = 14, kElevationClasses = 30;
 constexpr double kFirstRange_m = 1.5, kRangeRatio = 1.4;
 constexpr double kElevationClass_rad = std::numbers::pi / 2 / kElevationClasses;
-constexpr std::size_t kMinSamples = 24, kMaxSamples = 48;
+constexpr std::size_t kMaxSamples = 48;
 constexpr std::size_t kFewHigher = 10;  ///< so many returns may be birds, wires or noise
 constexpr double kBeside = 0.7;         ///< of the distance at which a ray concerns a place
 
@@ -86,7 +86,7 @@ ExpectedReturns::ExpectedReturns(const DirectionIndex& index, double near_m)
 float ExpectedReturns::medianOf(std::size_t number) const {
   Class& asked = classes_[number];
   const std::size_t size = asked.rays.size();
-  if (size < kMinSamples) return 0;
+  if (size < kFewestReturns) return 0;
   std::call_once(asked.is_counted, [&] {
     const std::size_t step = (size + kMaxSamples - 1) / kMaxSamples;
     const double farthest_m =

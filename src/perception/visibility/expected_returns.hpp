@@ -18,12 +18,15 @@ namespace cluxel::perception {
 /// alone: a scan that was thinned, cut off at a height or a range, or whose beams lie far apart, has few or none there.
 class ExpectedReturns {
  public:
+  /// Fewer returns of like range and elevation tell nothing.
+  static constexpr std::size_t kFewestReturns = 24;
+
   /// Counts rays within `near_m` of places. `index` must outlive this. Cost: linear in the rays above the sensor.
   ExpectedReturns(const DirectionIndex& index, double near_m);
 
   /// The rays that pass within `near_m` of a place when something is there, or behind it: the median over returns of
-  /// like range and elevation. Zero where fewer than 24 returns tell, or where hardly any goes higher at that range.
-  /// Cost: the first call for a class counts its rays, some ten microseconds.
+  /// like range and elevation. Zero where fewer than kFewestReturns tell, or where hardly any goes higher at that
+  /// range. Cost: the first call for a class counts its rays, some ten microseconds.
   double around(const Eigen::Vector3d& place) const;
 
  private:

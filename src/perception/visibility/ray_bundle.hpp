@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "perception/visibility/direction_index.hpp"
@@ -53,6 +54,10 @@ class RayBundle {
 
   const Eigen::Vector3d& origin() const { return origin_; }
   double maxRange_m() const { return max_range_m_; }
+  /// The ends of the rays relative to the origin [m], sorted by direction.
+  std::span<const Eigen::Vector3f> rays() const { return index_.rays(); }
+  /// Whether returnsMissing() may be more than zero: fewer rays tell nothing of those that did not return.
+  bool mayMissReturns() const { return index_.rays().size() >= ExpectedReturns::kFewestReturns; }
   /// None when the place is out of reach. Cost: the rays within `near_m` of the direction to the place.
   RaysNear raysNear(const Eigen::Vector3d& place_map, const RayParams& params) const;
   /// Whether a ray near a place passed it that would have ended at the thing there. Cost: as for raysNear().

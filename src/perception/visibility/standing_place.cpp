@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
+#include <numbers>
 #include <utility>
 
 namespace cluxel::perception {
@@ -16,23 +17,24 @@ constexpr double kStep_m = 0.3;  ///< twice RayParams::near_m; rays nearer to th
 constexpr double kHighest_m = 30;
 /// Who measured so near beside a place was looking: nothing is known of how wide a thing is.
 constexpr double kMeasured_m = 0.5;
-constexpr double kAlike_m = 2;  ///< rays that start so near to each other are stopped by the same things
+constexpr double kRaySquare_m = 8;       ///< longer rays than this are among those of several squares
+constexpr double kRayRounding_m = 0.01;  ///< of rays, which are floats
+constexpr double kAlike_m = 2;           ///< rays that start so near to each other are stopped by the same things
 
 using Bundles = std::vector<const RayBundle*>;
 
-/// Bundles that start within `view_m` of a place, by the square in which they start.
-std::vector<Bundles> startsNear(const ScanRays& rays, const StandingPlace& place, double view_m) {
+/// Bundles by the square in which they start.
+std::vector<Bundles> byStart(const Bundles& near) {
   std::map<std::pair<std::int64_t, std::int64_t>, Bundles> in_square;
   const auto number = [](double at) { return static_cast<std::int64_t>(std::floor(at / kAlike_m)); };
-  for (const RayBundle& bundle : rays.bundles())
-    if ((bundle.origin() - place.foot).head<2>().norm() <= view_m)
-      in_square[{number(bundle.origin().x()), number(bundle.origin().y())}].push_back(&bundle);
+  for (const RayBundle* bundle : near)
+    in_square[{number(bundle->origin().x()), number(bundle->origin().y())}].push_back(bundle);
   std::vector<Bundles> starts;
   for (auto& [square, bundles] : in_square) starts.push_back(std::move(bundles));
   return starts;
 }
 
-bool lookAt(const Bundles& bundles, const std::vector<Eigen::Vector3d>& points, const RayParams& params) {
+bool areLookingAt(const Bundles& bundles, const std::vector<Eigen::Vector3d>& points, const RayParams& params) {
   RayParams measured = params;
   measured.near_m = kMeasured_m;
   double passed = 0, stopped = 0;
@@ -69,11 +71,65 @@ std::vector<Eigen::Vector3d> pointsOf(const StandingPlace& place) {
   return points;
 }
 
-bool looksAt(const ScanRays& rays, const StandingPlace& place, double view_m, const RayParams& params) {
-  const std::vector<Bundles> starts = startsNear(rays, place, view_m);
+LookingRays::LookingRays(const ScanRays& rays, double view_m, const RayParams& params)
+    : view_m_(view_m),
+      edge_m_(std::max(kRaySquare_m, view_m / 4)),
+      beside_m_(std::max(kMeasured_m, params.near_m) + kRayRounding_m),
+      params_(params) {
+  for (const RayBundle& bundle : rays.bundles()) {
+    const auto number = static_cast<std::uint32_t>(bundles_.size());
+    bundles_.push_back(&bundle);
+    if (bundle.mayMissReturns()) {
+      large_.push_back(number);
+      continue;
+    }
+    std::set<Square> squares;
+    for (const Eigen::Vector3f& ray : bundle.rays()) addSquaresOf(bundle, ray, squares);
+    for (const Square& square : squares) small_beside_[square].push_back(number);
+  }
+}
+
+LookingRays::Square LookingRays::squareAt(const Eigen::Vector2d& p_map) const {
+  const auto number = [&](double at) { return static_cast<std::int64_t>(std::floor(at / edge_m_)); };
+  return {number(p_map.x()), number(p_map.y())};
+}
+
+void LookingRays::addSquaresOf(const RayBundle& bundle, const Eigen::Vector3f& ray, std::set<Square>& squares) const {
+  // A ray concerns places as far as the longest ray of its bundle reaches.
+  const Eigen::Vector3d way = ray.cast<double>().normalized();
+  const double reach_m = bundle.maxRange_m() + params_.hit_m, across = way.head<2>().norm();
+  const double length_m = std::min(reach_m, (view_m_ + beside_m_) / std::max(across, 1e-12));
+  const Eigen::Vector2d start = bundle.origin().head<2>(), end = start + length_m * way.head<2>();
+  const Eigen::Vector2d around = Eigen::Vector2d::Constant(beside_m_);
+  const Square low = squareAt(start.cwiseMin(end) - around), high = squareAt(start.cwiseMax(end) + around);
+  for (std::int64_t x = low.first; x <= high.first; ++x)
+    for (std::int64_t y = low.second; y <= high.second; ++y) {
+      const Eigen::Vector2d middle =
+          edge_m_ * Eigen::Vector2d(static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5);
+      const double along_m =
+          std::clamp((middle - start).dot(way.head<2>()) / std::max(across * across, 1e-12), 0.0, length_m);
+      if ((start + along_m * way.head<2>() - middle).norm() <= edge_m_ * std::numbers::sqrt2 / 2 + beside_m_)
+        squares.emplace(x, y);
+    }
+}
+
+std::vector<const RayBundle*> LookingRays::bundlesNear(const StandingPlace& place) const {
+  std::vector<std::uint32_t> numbers = large_;
+  if (const auto found = small_beside_.find(squareAt(place.foot.head<2>())); found != small_beside_.end()) {
+    numbers.insert(numbers.end(), found->second.begin(), found->second.end());
+    std::inplace_merge(numbers.begin(), numbers.begin() + static_cast<std::ptrdiff_t>(large_.size()), numbers.end());
+  }
+  std::vector<const RayBundle*> near;
+  for (const std::uint32_t number : numbers)
+    if ((bundles_[number]->origin() - place.foot).head<2>().norm() <= view_m_) near.push_back(bundles_[number]);
+  return near;
+}
+
+bool LookingRays::lookAt(const StandingPlace& place) const {
+  const std::vector<Bundles> starts = byStart(bundlesNear(place));
   const std::vector<Eigen::Vector3d> points = pointsOf(place);
   return std::any_of(starts.begin(), starts.end(),
-                     [&](const Bundles& bundles) { return lookAt(bundles, points, params); });
+                     [&](const Bundles& bundles) { return areLookingAt(bundles, points, params_); });
 }
 
 }  // namespace cluxel::perception

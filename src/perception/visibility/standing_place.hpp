@@ -3,6 +3,10 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
+#include <map>
+#include <set>
+#include <utility>
 #include <vector>
 
 #include "perception/visibility/scan_rays.hpp"
@@ -22,12 +26,35 @@ struct StandingPlace {
 /// where it is more than 0.15 m above the last of them. So each ray that meets the line passes one within 0.15 m.
 std::vector<Eigen::Vector3d> pointsOf(const StandingPlace& place);
 
-/// Whether the rays that start within `view_m` of the place, across the ground, tell what is there: one that passes it
-/// within half a metre ended `hit_m` before or behind it, or nearer; or `min_rays` that start in one square of 2 m
-/// passed it above the foot, and no more of those near it ended before it. A thing that stands behind a wall and looks
-/// over it is seen when more of it is seen than is hidden. Where no ray returns, those count that something there would
-/// return (RayBundle::returnsMissing). A steep ray counts at each point that it is near. Cost: for each point that of
-/// ScanRays::verdictAt().
-bool looksAt(const ScanRays& rays, const StandingPlace& place, double view_m, const RayParams& params = {});
+/// The rays of a scan by the places that they may tell of. Of scans in which each point has its own origin, most rays
+/// pass far from a place, and few are asked about it.
+class LookingRays {
+ public:
+  /// Rays that start further than `view_m` from a place, across the ground, do not count. `rays` must outlive this.
+  /// Cost: linear in the bundles.
+  LookingRays(const ScanRays& rays, double view_m, const RayParams& params = {});
+
+  /// Whether the rays tell what is at the place: one that passes it within half a metre ended `hit_m` before or behind
+  /// it, or nearer; or `min_rays` that start in one square of 2 m passed it above the foot, and no more of those near
+  /// it ended before it. A thing that stands behind a wall and looks over it is seen when more of it is seen than is
+  /// hidden. Where no ray returns, those count that something there would return (RayBundle::returnsMissing). A steep
+  /// ray counts at each point that it is near. Cost: for each point that of ScanRays::verdictAt() with bundlesNear().
+  bool lookAt(const StandingPlace& place) const;
+  /// All that may tell of the place: those of few rays where one passes it, or would if it were longer, and of the
+  /// others all in view. In the order of ScanRays.
+  std::vector<const RayBundle*> bundlesNear(const StandingPlace& place) const;
+
+ private:
+  using Square = std::pair<std::int64_t, std::int64_t>;
+  Square squareAt(const Eigen::Vector2d& p_map) const;
+  /// The squares that a ray of a bundle may tell of.
+  void addSquaresOf(const RayBundle& bundle, const Eigen::Vector3f& ray, std::set<Square>& squares) const;
+
+  double view_m_, edge_m_, beside_m_;
+  RayParams params_;
+  std::vector<const RayBundle*> bundles_;
+  std::vector<std::uint32_t> large_;                           ///< numbers of bundles with many rays, ascending
+  std::map<Square, std::vector<std::uint32_t>> small_beside_;  ///< of the others, by squares beside their rays
+};
 
 }  // namespace cluxel::perception

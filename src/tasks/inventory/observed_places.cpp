@@ -82,8 +82,9 @@ class PlacesBeside {
 void markSeenBy(const scan::Scan& scan, const std::map<std::size_t, StandingPlace>& places, double view_m,
                 std::vector<bool>& is_seen) {
   const perception::ScanRays rays(scan);
+  const perception::LookingRays looking(rays, view_m);
   for (const auto& [number, place] : places)
-    if (looksAt(rays, place, view_m)) is_seen[number] = true;
+    if (looking.lookAt(place)) is_seen[number] = true;
   if (!rays.empty()) return;
   const PlacesBeside beside(places);
   for (std::size_t i = 0; i < scan.points.size(); ++i)

@@ -15,9 +15,10 @@ struct AskedPlace {
   double height_m = 1;                           ///< above the ground
 };
 
-/// Whether rays of a scan from within `view_m` look at each place (perception::looksAt). A scan whose rays start at no
-/// known place looks at it when it has a point within 1 m of the upright line. Not where the map has no ground. Memory:
-/// one scan. Cost: about 0.1 us for each ray of the scans that may look at a place at which none before them did.
+/// Whether rays of a scan from within `view_m` look at each place (perception::LookingRays). A scan whose rays start at
+/// no known place looks at it when it has a point within 1 m of the upright line. Not where the map has no ground.
+/// Memory: one scan. Cost: about 0.1 us for each ray of the scans that may look at a place at which none before them
+/// did.
 std::vector<bool> observedPlaces(const mapping::MapReader& map, const std::vector<AskedPlace>& places, double view_m);
 
 }  // namespace cluxel::tasks
