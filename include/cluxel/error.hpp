@@ -79,11 +79,11 @@ enum class Remedy : std::uint8_t {
   NameTime,        ///< tell from when on scans count as later
 };
 
-/// Base of all errors of the library. what() says what is wrong, where, and what to do.
+/// Base of all errors of the library. what() says what is wrong, where, and what to do. A NUL character in it, where
+/// readers of what() would stop, becomes \0.
 class CLUXEL_API Error : public std::runtime_error {
  public:
-  Error(ErrorKind kind, const std::string& what, Remedy remedy = Remedy::None)
-      : std::runtime_error(what), kind_(kind), remedy_(remedy) {}
+  Error(ErrorKind kind, const std::string& what, Remedy remedy = Remedy::None);
   ErrorKind kind() const { return kind_; }
   Remedy remedy() const { return remedy_; }
 

@@ -18,6 +18,16 @@ std::string caretUnder(std::string_view line, std::size_t column) {
   return caret + '^';
 }
 
+std::string withoutNul(const std::string& text) {
+  std::string shown;
+  for (const char c : text)
+    if (c == '\0')
+      shown += "\\0";
+    else
+      shown += c;
+  return shown;
+}
+
 std::vector<Diagnostic> oneDiagnostic(SourceLocation location, std::string message, std::string hint) {
   Diagnostic diagnostic;
   diagnostic.location = std::move(location);
@@ -87,6 +97,9 @@ SourceLocation locate(std::string file, std::string_view text, std::size_t offse
   location.column = before.size() - (last_line_end == std::string_view::npos ? 0 : last_line_end + 1) + 1;
   return location;
 }
+
+Error::Error(ErrorKind kind, const std::string& what, Remedy remedy)
+    : std::runtime_error(withoutNul(what)), kind_(kind), remedy_(remedy) {}
 
 InputError::InputError(std::vector<Diagnostic> diagnostics) : InputError(std::move(diagnostics), Remedy::None) {}
 

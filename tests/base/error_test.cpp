@@ -23,6 +23,13 @@ TEST(SourceLocation, IsWrittenAsFarAsItIsKnown) {
   EXPECT_EQ(toString(SourceLocation{.file = "a", .byte_offset = 0}), "a: byte 0");
 }
 
+TEST(Error, IsReadToItsEndBehindANulCharacter) {
+  const std::string name("a\0b", 3);
+  EXPECT_STREQ(Error(ErrorKind::NotFound, "no class '" + name + "'").what(), "no class 'a\\0b'");
+  EXPECT_STREQ(InputError({.file = "f"}, "no '" + name + "'", "write 'c'").what(),
+               "f: error: no 'a\\0b'\n  hint: write 'c'");
+}
+
 TEST(Diagnostic, ShowsTheLineTheCaretAndTheHint) {
   EXPECT_EQ(format(faultAt(2, 3, "  tre: x")),
             "rules.yaml:2:3: error: unknown key\n    tre: x\n    ^\n  hint: did you mean 'tree'?");

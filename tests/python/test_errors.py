@@ -44,6 +44,12 @@ def test_a_faulty_query_is_named_with_line_and_column(campus_map):
     assert error.diagnostics[0].source_line == "WHERE { ?s ?p }" and str(error).startswith("mine.rq:2:15: error:")
 
 
+def test_messages_do_not_end_at_a_nul_character(campus_map):
+    with pytest.raises(cluxel.CluxelError) as raised:
+        campus_map.objects("\0")
+    assert "\\0" in str(raised.value) and len(str(raised.value)) > len("no class \\0")
+
+
 def test_all_faults_of_a_file_are_reported(campus, tmp_path):
     rules = tmp_path / "town.rules.yaml"
     text = (SOURCE / "rules" / "outdoor.rules.yaml").read_text()
