@@ -1,12 +1,48 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compares what LAS files state.
+// Compares what LAS files state, and doubts the units of what they and manifests state.
 #include "scan/las_frame.hpp"
 
+#include <optional>
 #include <utility>
 
+#include "base/proj_reference_system.hpp"
 #include "cluxel/error.hpp"
 
 namespace cluxel::scan {
+
+namespace {
+
+/// What is wrong with the unit of a coordinate system, where a map is to have it. `inputs`: what has it.
+std::optional<std::string> faultOfUnit(const LasCrs& stated, const ScanSetParams& params, const std::string& inputs) {
+  if (stated.is_geographic)
+    return "its coordinates are degrees (" + stated.crs + "); a map needs metres: project " + inputs + " first";
+  const auto unit = unitOf(stated);
+  if (!unit || *unit == params.frame.unit) return std::nullopt;
+  return "the unit of its coordinate system is " + std::string(nameOf(*unit)) + ", but its coordinates are read as " +
+         std::string(nameOf(params.frame.unit)) + "; " + params.remedies.unit;
+}
+
+std::string notKept(const std::filesystem::path& path, const std::string& crs) {
+  return path.string() + ": its coordinate system (" + crs +
+         ") is not kept, because the coordinates are converted to metres with z up";
+}
+
+}  // namespace
+
+std::string keptCrs(const std::string& crs, const std::filesystem::path& manifest, const ScanSetParams& params,
+                    ProgressSink& sink) {
+  const std::string name = crs.starts_with("+proj") ? crs + " +type=crs" : crs;  // else PROJ takes it for a conversion
+  const ReferenceSystem system = referenceSystem(name);
+  const LasCrs stated{name, {}, system.kind == ReferenceSystem::Kind::Geographic, {}};
+  std::optional<std::string> fault = faultOfUnit(stated, params, "the scans");
+  if (system.kind == ReferenceSystem::Kind::Unknown)
+    fault = "its coordinate system (" + crs +
+            ") is not known as one of plane coordinates; state the projected one of the outer frame, or none";
+  if (fault) sink.note(manifest.string() + ": warning: " + *fault);
+  const bool is_converted = params.frame.unit != LengthUnit::Metre && unitOf(stated) == params.frame.unit;
+  if (is_converted) sink.note(notKept(manifest, crs));
+  return is_converted ? std::string() : crs;
+}
 
 void LasFrame::read(const ScanFile& file) {
   if (file.format != ScanFormat::Las) return;
@@ -24,19 +60,12 @@ void LasFrame::read(const ScanFile& file) {
 
 std::string LasFrame::crs() const {
   if (crs_.empty() || params_->frame == InputFrame{}) return crs_;
-  sink_->note(first_.string() + ": its coordinate system (" + crs_ +
-              ") is not kept, because the coordinates are converted to metres with z up");
+  sink_->note(notKept(first_, crs_));
   return {};
 }
 
 void LasFrame::noteUnit(const LasCrs& stated, const std::filesystem::path& path) const {
-  if (stated.is_geographic)
-    sink_->note(path.string() + ": warning: its coordinates are degrees (" + stated.crs +
-                "); a map needs metres: project the file first");
-  else if (const auto unit = unitOf(stated); unit && *unit != params_->frame.unit)
-    sink_->note(path.string() + ": warning: the unit of its coordinate system is " + std::string(nameOf(*unit)) +
-                ", but its coordinates are read as " + std::string(nameOf(params_->frame.unit)) + "; " +
-                params_->remedies.unit);
+  if (const auto fault = faultOfUnit(stated, *params_, "the file")) sink_->note(path.string() + ": warning: " + *fault);
 }
 
 }  // namespace cluxel::scan

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one coordinate system that the LAS files of a set of scans state.
+// The one coordinate system of a set of scans, which LAS files or manifests state.
 #pragma once
 
 #include <filesystem>
@@ -10,6 +10,12 @@
 #include "scan/scan_set.hpp"
 
 namespace cluxel::scan {
+
+/// The coordinate system of a manifest as a map has it: empty when the coordinates are converted from its unit to
+/// metres. Warnings go to `sink`, as for LAS files: on degrees, on another unit than that of the inputs, and on a
+/// system that is unknown or has no plane coordinates. Cost: some milliseconds.
+std::string keptCrs(const std::string& crs, const std::filesystem::path& manifest, const ScanSetParams& params,
+                    ProgressSink& sink);
 
 class LasFrame {
  public:

@@ -64,7 +64,7 @@ class ScanGatherer {
       }
     }
     noteScansWithoutPose(files);
-    if (crs_.empty()) crs_ = las.crs();  // else a manifest states it
+    if (stated_crs_.empty()) crs_ = las.crs();
     return files;
   }
 
@@ -200,12 +200,14 @@ class ScanGatherer {
 
   void adoptFrame(const Manifest& manifest, const fs::path& path) {
     const bool other_origin = manifest.map_origin && map_origin_ && *manifest.map_origin != *map_origin_;
-    const bool other_crs = !manifest.crs.empty() && !crs_.empty() && manifest.crs != crs_;
+    const bool other_crs = !manifest.crs.empty() && !stated_crs_.empty() && manifest.crs != stated_crs_;
     if (other_origin || other_crs)
       throw InputError({.file = path.string()}, "has another map_origin or crs than an earlier manifest",
                        "one map has one frame");
     if (manifest.map_origin) map_origin_ = manifest.map_origin;
-    if (!manifest.crs.empty()) crs_ = manifest.crs;
+    if (manifest.crs.empty() || manifest.crs == stated_crs_) return;
+    stated_crs_ = manifest.crs;
+    crs_ = keptCrs(stated_crs_, path, *params_, *sink_);
   }
 
   void addEntry(const ManifestEntry& entry) {
@@ -263,6 +265,7 @@ class ScanGatherer {
   std::optional<fs::path> without_layout_;    ///< the first scan without a folder that states poses or times
   std::vector<FaultyScan> faulty_;
   std::optional<Eigen::Vector3d> map_origin_;
+  std::string stated_crs_;  ///< by a manifest
   std::string crs_;
 };
 

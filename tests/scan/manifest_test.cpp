@@ -11,6 +11,7 @@ using test::refusalOf;
 using test::ScratchFolder;
 using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 
 Manifest parsed(const std::string& text) {
   return parseManifest(text, "m.yaml", "/data");
@@ -88,6 +89,41 @@ TEST(Manifest, MixesFilesFoldersPosesAndFrames) {
   EXPECT_EQ(set.load(1).time_s, 4);
   EXPECT_EQ(set.mapOrigin(), Eigen::Vector3d(100, 0, 0));
   EXPECT_EQ(set.crs(), "EPSG:25832");
+}
+
+/// What is noted when a manifest with this coordinate system is read.
+std::string notesOnCrs(const std::string& crs, const ScanSetParams& params = {}, const std::string& kept = "") {
+  const ScratchFolder folder;
+  folder.write("a.xyz", "1 2 3\n");
+  folder.write("poses.txt", "1 0 0 1 0 1 0 0 0 0 1 0\n");
+  test::NoteKeeper sink;
+  const auto manifest = folder.write("m.yaml", "crs: \"" + crs + "\"\nscans: [.]\n");
+  EXPECT_EQ(ScanSet::open({manifest}, params, sink).crs(), kept.empty() ? crs : kept == "none" ? "" : kept);
+  std::string notes;
+  for (const std::string& note : sink.notes) notes += note + '\n';
+  return notes;
+}
+
+TEST(Manifest, WarnsOfACoordinateSystemThatIsNoneOfMetres) {
+  for (const char* crs : {"EPSG:25832", "http://www.opengis.net/def/crs/EPSG/0/25832", "+proj=utm +zone=32"})
+    EXPECT_EQ(notesOnCrs(crs), "") << crs;
+  EXPECT_THAT(notesOnCrs("EPSG:4326"),
+              HasSubstr("m.yaml: warning: its coordinates are degrees (EPSG:4326); a map needs metres: project"));
+  EXPECT_THAT(notesOnCrs("EPSG:2263"),
+              HasSubstr("m.yaml: warning: the unit of its coordinate system is us-ft, but its coordinates are read as "
+                        "m; state the unit"));
+  for (const char* crs : {"nonsense", "EPSG:99999", "EPSG:4978"})
+    EXPECT_THAT(notesOnCrs(crs), HasSubstr("m.yaml: warning: its coordinate system (" + std::string(crs) +
+                                           ") is not known as one of plane coordinates"));
+}
+
+TEST(Manifest, KeepsNoCoordinateSystemFromWhoseUnitTheCoordinatesAreConverted) {
+  ScanSetParams params;
+  params.frame.unit = LengthUnit::UsSurveyFoot;
+  EXPECT_THAT(notesOnCrs("EPSG:2263", params, "none"),
+              AllOf(HasSubstr("m.yaml: its coordinate system (EPSG:2263) is not kept, because the coordinates are"),
+                    Not(HasSubstr("warning"))));
+  EXPECT_THAT(notesOnCrs("EPSG:25832", params), HasSubstr("is m, but its coordinates are read as us-ft"));
 }
 
 TEST(Manifest, BringsEveryPoseFromTheOuterFrameIntoThatOfTheMap) {
