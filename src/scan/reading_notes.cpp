@@ -6,6 +6,19 @@
 
 namespace cluxel::scan {
 
+void ReadingNotes::Fields::add(const std::vector<std::string>& fields, const std::string& source) {
+  for (const std::string& field : fields) {
+    if (names.empty()) first = source;
+    if (std::find(names.begin(), names.end(), field) == names.end()) names.push_back(field);
+  }
+}
+
+std::string ReadingNotes::Fields::note(const std::string& why) const {
+  std::string list;
+  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+  return "ignored fields: " + list + ": " + why + " (" + first + ')';
+}
+
 std::vector<std::string> ReadingNotes::add(const ScanReading& reading) {
   ++scans_;
   if (reading.no_return_count > 0) {
@@ -14,11 +27,8 @@ std::vector<std::string> ReadingNotes::add(const ScanReading& reading) {
   }
   if (reading.withheld_count > 0 && withheld_count_ == 0) first_with_withheld_ = reading.source;
   withheld_count_ += reading.withheld_count;
-  for (const std::string& field : reading.ignored_fields) {
-    if (ignored_fields_.empty()) first_with_ignored_ = reading.source;
-    if (std::find(ignored_fields_.begin(), ignored_fields_.end(), field) == ignored_fields_.end())
-      ignored_fields_.push_back(field);
-  }
+  ignored_.add(reading.ignored_fields, reading.source);
+  lone_origins_.add(reading.lone_origin_fields, reading.source);
   std::vector<std::string> notes;
   for (const FrameDoubt doubt : reading.doubts) {
     if (std::find(doubts_.begin(), doubts_.end(), doubt) != doubts_.end()) continue;
@@ -46,11 +56,9 @@ std::vector<std::string> ReadingNotes::totals() const {
   if (withheld_count_ > 0)
     notes.push_back(std::to_string(withheld_count_) +
                     " points skipped that files mark as withheld, which means deleted (" + first_with_withheld_ + ')');
-  if (!ignored_fields_.empty()) {
-    std::string names;
-    for (const std::string& field : ignored_fields_) names += (names.empty() ? "" : ", ") + field;
-    notes.push_back("ignored fields: " + names + ": another field has the same meaning (" + first_with_ignored_ + ')');
-  }
+  if (!ignored_.names.empty()) notes.push_back(ignored_.note("another field has the same meaning"));
+  if (!lone_origins_.names.empty())
+    notes.push_back(lone_origins_.note("where a ray starts takes all of vp_x, vp_y and vp_z"));
   return notes;
 }
 

@@ -101,8 +101,9 @@ LoadedScan loadScan(const ScanFile& file) {
   ParsedScan parsed = parseScan(readFile(file.path), file.format, file.path.string());
   LoadedScan loaded;
   loaded.scan = scanOf(file, parsed);
-  loaded.reading = {loaded.scan.source, parsed.no_return.size() - parsed.withheld_count, parsed.withheld_count,
-                    parsed.ignored_fields, frameDoubtsOf(loaded.scan)};
+  loaded.reading = {loaded.scan.source,        parsed.no_return.size() - parsed.withheld_count,
+                    parsed.withheld_count,     parsed.ignored_fields,
+                    parsed.lone_origin_fields, frameDoubtsOf(loaded.scan)};
   return loaded;
 }
 

@@ -251,10 +251,15 @@ class ScanGatherer {
     const auto first = std::find_if_not(files.begin(), files.end(), posed);
     if (first == files.end()) return;
     const auto unposed = std::count_if(files.begin(), files.end(), std::not_fn(posed));
+    // Whether points have origins shows only when they are read.
+    const bool may_have_origins = std::any_of(first, files.end(), [](const ScanFile& file) {
+      return !file.has_pose && (file.format == ScanFormat::Pcd || file.format == ScanFormat::Ply);
+    });
     sink_->note(std::to_string(unposed) + " of " + std::to_string(files.size()) +
                 " scans have no pose and are taken as given in the map frame (" + first->path.string() +
                 (unposed > 1 ? ", ..." : "") +
-                "): the position of the sensor is unknown, so visibility queries answer \"not observed\"");
+                "): " + (may_have_origins ? "unless the points state where rays start (vp_x, vp_y, vp_z), " : "") +
+                "the position of the sensor is unknown, so visibility queries answer \"not observed\"");
   }
 
   const ScanSetParams* params_;

@@ -54,9 +54,10 @@ struct FaultyScan {
 /// What a person should know about the reading of one scan.
 struct ScanReading {
   std::string source;
-  std::size_t no_return_count = 0;          ///< records without a finite position, which were skipped
-  std::size_t withheld_count = 0;           ///< points that the file marks as deleted, which were skipped
-  std::vector<std::string> ignored_fields;  ///< fields whose meaning another field has already
+  std::size_t no_return_count = 0;              ///< records without a finite position, which were skipped
+  std::size_t withheld_count = 0;               ///< points that the file marks as deleted, which were skipped
+  std::vector<std::string> ignored_fields;      ///< fields whose meaning another field has already
+  std::vector<std::string> lone_origin_fields;  ///< fields of an origin that lacks the others
   std::vector<FrameDoubt> doubts;
 };
 
@@ -121,8 +122,15 @@ class ReadingNotes {
   InputRemedies remedies_;
   std::vector<FrameDoubt> doubts_;
   std::size_t scans_ = 0, scans_with_no_return_ = 0, no_return_count_ = 0, withheld_count_ = 0;
-  std::string first_with_no_return_, first_with_ignored_, first_with_withheld_;
-  std::vector<std::string> ignored_fields_;
+  std::string first_with_no_return_, first_with_withheld_;
+  /// Names of ignored fields, each once, and the first scan that has one.
+  struct Fields {
+    std::vector<std::string> names;
+    std::string first;
+    void add(const std::vector<std::string>& fields, const std::string& source);
+    std::string note(const std::string& why) const;
+  };
+  Fields ignored_, lone_origins_;
 };
 
 }  // namespace cluxel::scan

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "scan/scan_fixture.hpp"
+#include "scan/scan_summary.hpp"
 
 namespace cluxel::scan {
 namespace {
@@ -55,6 +56,35 @@ TEST(PlyFormat, TakesPropertiesOfAnyTypeOrderAndConvention) {
   EXPECT_THAT(scan.points.z, ElementsAre(3.F));
   EXPECT_THAT(scan.points.label, ElementsAre(9U));
   EXPECT_THAT(scan.points.intensity, ElementsAre(70.F));
+}
+
+TEST(PlyFormat, SaysThatItIgnoresAPartOfAnOrigin) {
+  const test::ScratchFolder folder;
+  const auto part =
+      folder.write("part.ply", header("ascii", 1, kXyz + "property float VP_X\nproperty float vp_z\n") + "1 2 3 4 5\n");
+  const auto whole = folder.write(
+      "whole.ply",
+      header("ascii", 1, kXyz + "property float vp_x\nproperty float vp_y\nproperty float vp_z\n") + "1 2 3 4 5 6\n");
+  test::NoteKeeper sink;
+  const ScanSetSummary of_part = summarize(ScanSet::open({part}, {}, sink));
+  EXPECT_FALSE(of_part.scans[0].has_origins);
+  EXPECT_THAT(of_part.notes, ElementsAre("ignored fields: VP_X, vp_z: where a ray starts takes all of vp_x, vp_y and "
+                                         "vp_z (" +
+                                         part.string() + ")"));
+  const ScanSetSummary of_whole = summarize(ScanSet::open({whole}, {}, sink));
+  EXPECT_TRUE(of_whole.scans[0].has_origins);
+  EXPECT_THAT(of_whole.notes, ElementsAre());
+}
+
+/// Poses and headers are read before the points.
+TEST(PlyFormat, MayTellWhereRaysStartWithoutAPose) {
+  const test::ScratchFolder folder;
+  test::NoteKeeper of_ply, of_xyz;
+  ScanSet::open({folder.write("a.ply", header("ascii", 1, kXyz) + "1 2 3\n")}, {}, of_ply);
+  ScanSet::open({folder.write("b.xyz", "1 2 3\n")}, {}, of_xyz);
+  EXPECT_THAT(of_ply.notes, ElementsAre(HasSubstr("unless the points state where rays start (vp_x, vp_y, vp_z), the "
+                                                  "position of the sensor is unknown")));
+  EXPECT_THAT(of_xyz.notes, ElementsAre(HasSubstr("): the position of the sensor is unknown")));
 }
 
 TEST(PlyFormat, KeepsMillimetresOfWorldCoordinatesInDoubles) {

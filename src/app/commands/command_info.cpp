@@ -52,6 +52,7 @@ Json scanJson(const scan::ScanSummary& scan) {
             {"extent_map_m", boxJson(scan.extent_map_m)},
             {"has_pose", scan.has_pose},
             {"has_intensity", scan.has_intensity},
+            {"has_origins", scan.has_origins},
             {"labels", labelsJson(scan.points_by_label)}};
   json["frame"] = scan.has_pose ? "sensor, posed in map" : "map";
   if (scan.time_s) json["time_s"] = *scan.time_s;
@@ -67,9 +68,10 @@ std::string sizeText(const Eigen::AlignedBox3d& box) {
 
 void printScans(const scan::ScanSetSummary& summary) {
   for (const scan::ScanSummary& scan : summary.scans) {
-    std::printf("%s  %s  %zu points  %s  %s%s%s\n", scan.source.c_str(), nameOf(scan.format), scan.point_count,
+    std::printf("%s  %s  %zu points  %s  %s%s%s%s\n", scan.source.c_str(), nameOf(scan.format), scan.point_count,
                 sizeText(scan.extent_map_m).c_str(), scan.has_pose ? "posed" : "no pose: in the map frame",
-                scan.has_intensity ? "  intensity" : "", scan.points_by_label.empty() ? "" : "  labels");
+                scan.has_origins ? "  origins of rays" : "", scan.has_intensity ? "  intensity" : "",
+                scan.points_by_label.empty() ? "" : "  labels");
   }
   std::printf("%zu scans, %zu points, extent %s\n", summary.scans.size(), summary.point_count,
               sizeText(summary.extent_map_m).c_str());

@@ -22,8 +22,9 @@ struct ParsedScan {
   std::optional<Eigen::Isometry3d> viewpoint;  ///< the sensor's pose, when the file holds one
   /// Records that are no points, ascending: without a finite position, or withheld.
   std::vector<std::size_t> no_return;
-  std::size_t withheld_count = 0;           ///< of these, records that the file marks as deleted
-  std::vector<std::string> ignored_fields;  ///< fields whose meaning another field has already
+  std::size_t withheld_count = 0;               ///< of these, records that the file marks as deleted
+  std::vector<std::string> ignored_fields;      ///< fields whose meaning another field has already
+  std::vector<std::string> lone_origin_fields;  ///< fields of an origin that lacks the others
 };
 
 /// A float beyond this is coarser than half a millimetre, so points are stored relative to a local origin.

@@ -128,14 +128,18 @@ FieldRoles rolesOf(const std::vector<PointField>& fields, const std::string& fil
     if (missing(role)) refuseFile(file, "has no field '" + std::string(name) + "'", "a scan needs x, y and z");
   const auto origins = {FieldRole::OriginX, FieldRole::OriginY, FieldRole::OriginZ};
   if (std::any_of(origins.begin(), origins.end(), missing))
-    for (FieldRole& role : roles)
-      if (role >= FieldRole::OriginX) role = FieldRole::None;
+    for (std::size_t i = 0; i < roles.size(); ++i) {
+      if (roles[i] < FieldRole::OriginX || roles[i] == FieldRole::None) continue;
+      roles[i] = FieldRole::None;
+      found.lone_origins.push_back(fields[i].name);
+    }
   return found;
 }
 
 RowCollector::RowCollector(const FieldRoles& fields, CloudGrid grid, ParsedScan& scan)
     : grid_(grid), scan_(&scan), points_(scan) {
   scan.ignored_fields = fields.ignored;
+  scan.lone_origin_fields = fields.lone_origins;
   for (const FieldRole role : fields.roles)
     if (role != FieldRole::None) has_[static_cast<std::size_t>(role)] = true;
 }

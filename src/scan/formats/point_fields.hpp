@@ -38,7 +38,8 @@ inline constexpr std::size_t kFieldRoleCount = 8;
 /// The role of each field of a record.
 struct FieldRoles {
   std::vector<FieldRole> roles;
-  std::vector<std::string> ignored;  ///< names of fields whose role a preferred field has
+  std::vector<std::string> ignored;       ///< names of fields whose role a preferred field has
+  std::vector<std::string> lone_origins;  ///< names of fields that tell of a part of an origin, and are ignored
 };
 
 /// Roles by the names that PCL, CloudCompare, sensor drivers (Ouster, Velodyne), the KITTI tools and LAS converters
