@@ -11,6 +11,7 @@
 #include "app/shared_options.hpp"
 #include "base/utc_time.hpp"
 #include "cluxel/error.hpp"
+#include "mapping/clouds/ray_starts.hpp"
 #include "mapping/map_reader.hpp"
 #include "mapping/origin_text.hpp"
 #include "rdf/file/map_check.hpp"
@@ -136,29 +137,31 @@ Json poseJson(const Eigen::Isometry3d& T) {
   return rows;
 }
 
-Json cloudsJson(const std::vector<mapping::Cloud>& clouds) {
+Json cloudsJson(const mapping::MapReader& map) {
   Json json = Json::array();
-  for (const mapping::Cloud& cloud : clouds) {
+  for (const mapping::Cloud& cloud : map.clouds()) {
     Json entry{{"id", cloud.id.hex()},
                {"source", cloud.source},
                {"points", cloud.point_count},
                {"has_pose", cloud.has_pose},
                {"extent_map_m", boxJson({cloud.min, cloud.max})}};
     if (cloud.has_pose) entry["T_map_sensor"] = poseJson(cloud.T_map_sensor);
+    const std::vector<Eigen::Vector3d> starts = mapping::rayStartsOf(map.transaction(), cloud);
+    if (starts.size() == 1) entry["sensor"] = {starts[0].x(), starts[0].y(), starts[0].z()};
     if (cloud.time_s) entry["time_s"] = *cloud.time_s;
     json.push_back(std::move(entry));
   }
   return json;
 }
 
-void printCloud(const mapping::Cloud& cloud) {
-  const Eigen::Vector3d at = cloud.T_map_sensor.translation();
+void printCloud(const mapping::MapReader& map, const mapping::Cloud& cloud) {
   std::printf("  cloud %s  %llu points  %s", cloud.id.hex().c_str(), static_cast<unsigned long long>(cloud.point_count),
               cloud.source.c_str());
-  if (cloud.has_pose)
-    std::printf("  sensor at %.2f %.2f %.2f m", at.x(), at.y(), at.z());
-  else
-    std::printf("  no pose");
+  if (!cloud.has_pose) std::printf("  no pose");
+  const std::vector<Eigen::Vector3d> starts = mapping::rayStartsOf(map.transaction(), cloud);
+  if (!starts.empty())
+    std::printf("  sensor %s %.2f %.2f %.2f m", starts.size() == 1 ? "at" : "moved, at last at", starts[0].x(),
+                starts[0].y(), starts[0].z());
   std::printf("%s%s\n", cloud.time_s ? "  " : "", cloud.time_s ? dateTimeText(*cloud.time_s).c_str() : "");
 }
 
@@ -256,7 +259,7 @@ ExitCode infoOfMap(const InfoOptions& options, const fs::path& file, const Sessi
                 static_cast<unsigned long long>(summary.quads));
     for (const auto& [name, count] : summary.objects_by_class) std::printf("  %-14s %zu\n", name.c_str(), count);
     if (options.clouds)
-      for (const mapping::Cloud& cloud : map.clouds()) printCloud(cloud);
+      for (const mapping::Cloud& cloud : map.clouds()) printCloud(map, cloud);
     if (options.layers) printLayers(map.layers(), diskBytesOf(file), summary.points);
     if (!inputs.crs.empty()) std::printf("coordinate system: %s\n", inputs.crs.c_str());
     if (!inputs.map_origin.isZero(0)) std::printf("map_origin: %s m\n", mapping::originText(inputs.map_origin).c_str());
@@ -267,7 +270,7 @@ ExitCode infoOfMap(const InfoOptions& options, const fs::path& file, const Sessi
             {"inputs", summary.inputs_hash}, {"clouds", summary.clouds},
             {"points", summary.points},      {"objects", summary.objects},
             {"quads", summary.quads},        {"objects_by_class", summary.objects_by_class}};
-  if (options.clouds) json["cloud_list"] = cloudsJson(map.clouds());
+  if (options.clouds) json["cloud_list"] = cloudsJson(map);
   if (options.layers) {
     json["layers"] = layersJson(map.layers());
     json["disk_bytes"] = diskBytesOf(file);

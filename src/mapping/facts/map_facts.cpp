@@ -4,10 +4,12 @@
 #include "mapping/facts/map_facts.hpp"
 
 #include <cmath>
+#include <optional>
 #include <set>
 #include <span>
 
 #include "base/utc_time.hpp"
+#include "mapping/clouds/ray_starts.hpp"
 #include "mapping/facts/fact_order.hpp"
 #include "mapping/facts/object_facts.hpp"
 #include "mapping/origin_text.hpp"
@@ -18,11 +20,11 @@ namespace cluxel::mapping {
 namespace {
 
 ContentHash causeOf(const Cloud& cloud) {
-  const Eigen::Vector3d& place = cloud.T_map_sensor.translation();
+  const std::optional<Eigen::Vector3d> place = sensorPlaceOf(cloud);
   ContentHasher hasher;
   for (const Eigen::Vector3d* corner : {&cloud.min, &cloud.max}) hasher.addBytes(corner->data(), 3 * sizeof(double));
-  hasher.add(cloud.point_count).add(cloud.has_pose);
-  if (cloud.has_pose) hasher.add(place.x()).add(place.y()).add(place.z());
+  hasher.add(cloud.point_count).add(place.has_value());
+  if (place) hasher.add(place->x()).add(place->y()).add(place->z());
   return hasher.add(cloud.time_s.has_value()).add(cloud.time_s.value_or(0)).finish();
 }
 
@@ -141,7 +143,7 @@ void addCloud(const Cloud& cloud, FactSink& facts) {
   facts.type(subject, rdf::vocabulary::clx("Cloud"));
   facts.count(subject, "pointCount", cloud.point_count);
   addBounds(subject, cloud.min, cloud.max, facts);
-  if (cloud.has_pose) addPosition(subject, cloud.T_map_sensor.translation(), facts);
+  if (const auto place = sensorPlaceOf(cloud)) addPosition(subject, *place, facts);
   if (cloud.time_s)
     facts.literal(subject, std::string(rdf::vocabulary::kSosa) + "resultTime", dateTimeText(*cloud.time_s),
                   rdf::vocabulary::xsd("dateTime"));

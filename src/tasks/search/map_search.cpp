@@ -10,6 +10,7 @@
 
 #include "base/ascii.hpp"
 #include "cluxel/error.hpp"
+#include "mapping/clouds/ray_starts.hpp"
 #include "rdf/map_iris.hpp"
 #include "rdf/ontology/ontology.hpp"
 #include "rdf/vocabulary.hpp"
@@ -43,7 +44,10 @@ double shown(double value) {
 
 Eigen::Vector2d lastStop(const mapping::MapReader& map) {
   std::vector<mapping::Cloud> clouds = map.clouds();
-  std::erase_if(clouds, [](const mapping::Cloud& cloud) { return !cloud.has_pose; });
+  const auto tells_nothing = [&](const mapping::Cloud& cloud) {
+    return !cloud.has_pose && mapping::rayStartsOf(map.transaction(), cloud).empty();
+  };
+  std::erase_if(clouds, tells_nothing);
   if (clouds.empty())
     throw Error(ErrorKind::NotFound, "no scan of the map tells where its sensor stood; name the start",
                 Remedy::NameStart);
@@ -53,7 +57,7 @@ Eigen::Vector2d lastStop(const mapping::MapReader& map) {
   if (clouds.size() > 1 && !last->time_s)
     throw Error(ErrorKind::NotFound, "the scans of the map have no times, so that none is the last; name the start",
                 Remedy::NameStart);
-  return last->T_map_sensor.translation().head<2>();
+  return mapping::rayStartsOf(map.transaction(), *last).front().head<2>();
 }
 
 namespace {

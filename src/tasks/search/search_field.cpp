@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "cluxel/error.hpp"
+#include "mapping/clouds/ray_starts.hpp"
 #include "tasks/ways/class_cells.hpp"
 #include "tasks/ways/passable_grid.hpp"
 
@@ -20,6 +21,18 @@ LargeArray<std::uint32_t> cellsOf(const GridFrame& frame, const PlaceEvidence& p
   for (std::uint32_t cell = 0; cell < frame.size(); ++cell)
     if (nearest.distance[cell] * frame.cell_m <= place.within_m) cells.push_back(cell);
   return cells;
+}
+
+/// What a scan knows that was measured from a place.
+void addView(const SightGrid& sight, const Eigen::Vector2d& stop, const SearchParams& params,
+             LargeArray<float>& known) {
+  const double far_m = params.view_m * std::max(1.0, params.fade);
+  for (const std::uint32_t cell : visibleFrom(sight, stop, far_m)) {
+    const double distance_m = (sight.frame.centreOf(cell) - stop).norm();
+    const double share = std::clamp((far_m - distance_m) / std::max(1e-9, far_m - params.view_m), 0.0, 1.0);
+    const double here = params.detection * (distance_m <= params.view_m ? 1.0 : share);
+    known[cell] = std::max(known[cell], static_cast<float>(here));
+  }
 }
 
 }  // namespace
@@ -38,18 +51,11 @@ LargeArray<float> knownShare(const mapping::MapReader& map, const TerrainGrid& t
                              const SearchParams& params) {
   const GridFrame& frame = sight.frame;
   LargeArray<float> known(frame.size(), 0.0F);
-  const double far_m = params.view_m * std::max(1.0, params.fade);
   for (const mapping::Cloud& cloud : map.clouds()) {
-    for (std::uint32_t cell = 0; !cloud.has_pose && cell < frame.size(); ++cell)
-      if (terrain.seen[cell] != 0) known[cell] = static_cast<float>(params.detection);
-    const Eigen::Vector2d stop = cloud.T_map_sensor.translation().head<2>();
-    if (!cloud.has_pose) continue;
-    for (const std::uint32_t cell : visibleFrom(sight, stop, far_m)) {
-      const double distance_m = (frame.centreOf(cell) - stop).norm();
-      const double share = std::clamp((far_m - distance_m) / std::max(1e-9, far_m - params.view_m), 0.0, 1.0);
-      const double here = params.detection * (distance_m <= params.view_m ? 1.0 : share);
-      known[cell] = std::max(known[cell], static_cast<float>(here));
-    }
+    const std::vector<Eigen::Vector3d> starts = mapping::rayStartsOf(map.transaction(), cloud);
+    for (std::uint32_t cell = 0; starts.empty() && cell < frame.size(); ++cell)
+      if (terrain.seen[cell] != 0) known[cell] = std::max(known[cell], static_cast<float>(params.detection));
+    for (const Eigen::Vector3d& start : starts) addView(sight, start.head<2>(), params, known);
   }
   return known;
 }

@@ -42,8 +42,8 @@ std::vector<PlaceEvidence> evidenceOf(const mapping::MapReader& map, const Terra
                                       const std::vector<rdf::UsualPlace>& places, const std::vector<bool>& is_left_out);
 
 /// Per cell, the probability that the map knows an object of the class that is there: `detection` within view_m of a
-/// scan that sees the cell, from there falling to 0 at fade times view_m. Scans without a pose count where ground was
-/// measured.
+/// place where rays of a scan start and which sees the cell, from there falling to 0 at fade times view_m. Scans that
+/// do not tell where their rays start count where ground was measured.
 LargeArray<float> knownShare(const mapping::MapReader& map, const TerrainGrid& terrain, const SightGrid& sight,
                              const SearchParams& params);
 

@@ -41,7 +41,7 @@ std::vector<SearchStop> tourOf(const PassableGrid& grid, const SightGrid& sight,
 /// A search in a map.
 struct SearchRequest {
   std::string class_name;             ///< what to look for: local name, clx:name or IRI
-  std::string from;                   ///< as placeNamed(); empty: the position of the last scan
+  std::string from;                   ///< as placeNamed(); empty: as lastStop()
   std::filesystem::path places = {};  ///< Turtle with usual places instead of the ontology's; empty: the ontology's
   WayRequest ways = {};
   SearchParams search = {};
@@ -61,7 +61,8 @@ struct SearchAnswer {
   std::vector<rdf::UsualPlace> places;  ///< parallel to reasons
 };
 
-/// Where the sensor stood at last. Throws Error (NotFound) when no scan has a pose, or several have and none a time.
+/// Where the sensor stood at last: where the last ray of the last scan starts. Throws Error (NotFound) when no scan
+/// tells where its rays start, or several do and none has a time.
 Eigen::Vector2d lastStop(const mapping::MapReader& map);
 /// The usual places of a class in a Turtle file, as `search learn` writes it; those of the ontology without a file.
 /// Throws Error (InvalidArgument) for a file that says nothing about the class.

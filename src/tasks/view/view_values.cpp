@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "mapping/clouds/ray_starts.hpp"
 #include "mapping/layers/stored_layers.hpp"
 #include "mapping/regions/object_extents.hpp"
 #include "rdf/file/check/commit_name.hpp"
@@ -38,7 +39,7 @@ ViewJson cloudsJson(const mapping::MapReader& map) {
     ViewJson json{{"id", cloud.id.hex()}, {"points", cloud.point_count}};
     json["source"] = std::filesystem::path(cloud.source).filename().string();
     if (cloud.time_s) json["time"] = *cloud.time_s;
-    if (cloud.has_pose) json["position"] = vectorJson(cloud.T_map_sensor.translation());
+    if (const auto place = mapping::sensorPlaceOf(cloud)) json["position"] = vectorJson(*place);
     all.push_back(std::move(json));
   }
   return all;
