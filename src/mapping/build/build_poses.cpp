@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdio>
+#include <string>
 
 #include "cluxel/error.hpp"
 #include "scan/registration/pose_registration.hpp"
@@ -28,23 +29,68 @@ scan::ScanSet withRefinedPoses(const scan::ScanSet& scans, unsigned threads, Pro
 /// Points of a scan: enough for a median, and planes of all take as long as a tenth of a small build.
 constexpr std::size_t kCompared = 6000;
 
+namespace {
+
+/// The least of the residuals that tells by itself: those of single pairs vary where leaves stand.
+constexpr double kGrossResidual_m = 4 * scan::kFittingResidual_m;
+
+/// Scans so close to each other overlap well wherever they were taken, unless a pose is wrong.
+constexpr double kAmid = 1.5;
+
+/// The names of the two scans of a pair.
+std::string namesOf(const scan::ScanSet& scans, const scan::PoseRegistration& found, const scan::RegisteredPair& pair) {
+  const auto name = [&](std::size_t i) { return scans.file(found.scans[i].index).path.string(); };
+  return name(pair.first) + " and " + name(pair.second);
+}
+
+/// What measured pairs say against the poses; empty when nothing.
+std::string misfit(const scan::ScanSet& scans, const scan::PoseRegistration& found) {
+  const scan::RegisteredPair* worst = nullptr;
+  for (const scan::RegisteredPair& pair : found.pairs)
+    if (pair.outcome == scan::PairOutcome::Used && (!worst || pair.residual_before_m > worst->residual_before_m))
+      worst = &pair;
+  std::array<char, 64> text{};
+  if (found.residual_before_m > scan::kFittingResidual_m) {
+    std::snprintf(text.data(), text.size(), "%.2f m apart (median of the scans examined)", found.residual_before_m);
+    return "surfaces of neighbouring scans lie " + std::string(text.data());
+  }
+  if (!worst || worst->residual_before_m <= kGrossResidual_m) return {};
+  std::snprintf(text.data(), text.size(), " lie %.2f m apart", worst->residual_before_m);
+  return "surfaces of " + namesOf(scans, found, *worst) + text.data();
+}
+
+/// The pair of least overlap among those that lie amid each other, though no measured pairs join them.
+const scan::RegisteredPair* unjoined(const scan::PoseRegistration& found) {
+  const scan::RegisteredPair* least = nullptr;
+  for (const scan::RegisteredPair& pair : found.pairs)
+    if (pair.spacing < kAmid && found.scans[pair.first].group != found.scans[pair.second].group &&
+        (!least || pair.overlap < least->overlap))
+      least = &pair;
+  return least;
+}
+
+}  // namespace
+
 void noteDoubtfulPoses(const scan::ScanSet& scans, unsigned threads, ProgressSink& sink) {
   const std::vector<scan::PosedScan> sample = sampledNeighbours(scans);
   if (sample.empty()) return;
-  double residual_m = 0;
+  const scan::ScanSet examined = scans.posed(sample);
+  scan::PoseRegistration found;
   try {
-    residual_m = measurePoses(scans.posed(sample), {.max_compared = kCompared}, threads, sink).residual_before_m;
-  } catch (const Error&) {
+    found = measurePoses(examined, {.max_compared = kCompared}, threads, sink);
+  } catch (const InputError&) {
     return;
+  } catch (const Error& fault) {
+    return sink.note(std::string("poses are not checked: ") + fault.what());
   }
-  if (residual_m <= scan::kFittingResidual_m) return;
-  std::array<char, 256> text{};
-  std::snprintf(
-      text.data(), text.size(),
-      "poses do not fit each other: surfaces of neighbouring scans lie %.2f m apart (median of the scans examined); "
-      "refine the poses before or during the build",
-      residual_m);
-  sink.note(text.data());
+  if (const std::string why = misfit(examined, found); !why.empty())
+    sink.note("poses do not fit each other: " + why + "; refine the poses before or during the build");
+  if (const scan::RegisteredPair* pair = unjoined(found)) {
+    std::array<char, 64> text{};
+    std::snprintf(text.data(), text.size(), "only %.0f %% of their surfaces meet", 100 * pair->overlap);
+    sink.note("poses may be grossly wrong: " + namesOf(examined, found, *pair) + " lie amid each other, but " +
+              text.data() + "; check that the poses belong to the scans");
+  }
 }
 
 }  // namespace cluxel::mapping

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include "base/counted_progress.hpp"
@@ -181,6 +182,28 @@ std::vector<ScanPlace> placesOf(const RegistrationScans& scans, const Poses& pos
   return places;
 }
 
+/// Where most surfaces of a scan lie, across the ground [m, map].
+struct Middle {
+  Eigen::Vector2d at = Eigen::Vector2d::Zero();
+  double reach_m = 0;  ///< half of them lie within it; 0 for too few to tell
+};
+
+Middle middleOf(const SurfaceCloud& cloud, const Eigen::Isometry3d& T_map_sensor) {
+  constexpr std::size_t kFew = 200;
+  Middle middle;
+  if (cloud.withPlane().size() < kFew) return middle;
+  std::vector<Eigen::Vector2d> places;
+  for (const std::size_t i : cloud.withPlane()) places.emplace_back((T_map_sensor * cloud.point(i)).head<2>());
+  const auto median = [&](const auto& value) {
+    std::vector<double> values;
+    for (const Eigen::Vector2d& place : places) values.push_back(value(place));
+    return medianOf(std::move(values));
+  };
+  for (const int axis : {0, 1}) middle.at[axis] = median([&](const Eigen::Vector2d& place) { return place[axis]; });
+  middle.reach_m = median([&](const Eigen::Vector2d& place) { return (place - middle.at).norm(); });
+  return middle;
+}
+
 /// The report, with scans in natural order of their paths.
 PoseRegistration reported(const RegistrationScans& scans, const Poses& poses, const std::vector<ScanPair>& pairs,
                           const std::vector<PairOutcome>& outcomes, const std::vector<PairEvidence>& before,
@@ -192,12 +215,17 @@ PoseRegistration reported(const RegistrationScans& scans, const Poses& poses, co
     const Vector6d moved = smallMotion(scans.given[i].inverse() * poses[i]);
     report.scans.push_back({scans.index[i], poses[i], moved.head<3>().norm(), moved.tail<3>().norm(), 0, 0});
   }
+  std::vector<Middle> middles;
+  for (std::size_t i = 0; i < scans.clouds.size(); ++i) middles.push_back(middleOf(scans.clouds[i], scans.given[i]));
   DisjointSets groups(report.scans.size());
   std::vector<double> residuals_before, residuals_after;
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     const std::size_t one = place[pairs[k].first], other = place[pairs[k].second];
     const std::size_t first = std::min(one, other), second = std::max(one, other);
-    report.pairs.push_back({first, second, outcomes[k], after[k].overlap, before[k].residual_m, after[k].residual_m});
+    const Middle &a = middles[pairs[k].first], &b = middles[pairs[k].second];
+    const double spacing = (a.at - b.at).norm() / std::min(a.reach_m, b.reach_m);
+    report.pairs.push_back(
+        {first, second, outcomes[k], after[k].overlap, before[k].residual_m, after[k].residual_m, spacing});
     if (outcomes[k] != PairOutcome::Used) continue;
     for (const std::size_t end : {first, second}) ++report.scans[end].pairs;
     groups.join(static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(second));
@@ -255,20 +283,20 @@ PoseRegistration measurePoses(const ScanSet& set, const RegistrationParams& para
 
 std::vector<PosedScan> sampledNeighbours(const ScanSet& scans) {
   constexpr std::size_t kPairs = 3;
-  const std::size_t count = scans.size();
+  std::vector<std::size_t> with_pose;
+  for (std::size_t i = 0; i < scans.size(); ++i)
+    if (scans.file(i).has_pose) with_pose.push_back(i);
+  const std::size_t count = with_pose.size();
   std::set<std::size_t> chosen;
   for (std::size_t k = 0; k < kPairs && count > 1; ++k) {
-    const std::size_t i = k * (count - 1) / (kPairs - 1);
+    const std::size_t i = with_pose[k * (count - 1) / (kPairs - 1)];
     const Eigen::Vector3d at = scans.file(i).T_map_sensor.translation();
-    std::size_t nearest = i == 0 ? 1 : 0;
-    for (std::size_t j = 0; j < count; ++j) {
-      if (!scans.file(j).has_pose) return {};
-      const auto distance_m = [&](std::size_t other) {
-        return (scans.file(other).T_map_sensor.translation() - at).norm();
-      };
-      if (j != i && distance_m(j) < distance_m(nearest)) nearest = j;
-    }
-    chosen.insert({i, nearest});
+    const auto distance_m = [&](std::size_t other) {
+      return other == i ? std::numeric_limits<double>::infinity()
+                        : (scans.file(other).T_map_sensor.translation() - at).norm();
+    };
+    chosen.insert({i, *std::min_element(with_pose.begin(), with_pose.end(),
+                                        [&](std::size_t a, std::size_t b) { return distance_m(a) < distance_m(b); })});
   }
   std::vector<PosedScan> posed;
   for (const std::size_t i : chosen) posed.push_back({i, scans.file(i).T_map_sensor});

@@ -34,6 +34,9 @@ struct RegisteredPair {
   double overlap = 0;            ///< in [0, 1], with the refined poses
   double residual_before_m = 0;  ///< median distance of points of one scan to planes of the other, of the surfaces ...
   double residual_after_m = 0;   ///< ... that face the direction in which the two disagree most
+  /// How far apart the scans lie under the given poses, across the ground: the distance of their middles by that within
+  /// which half of the points of a scan lie, the smaller of the two. Infinite where few points tell.
+  double spacing = std::numeric_limits<double>::infinity();
 };
 
 struct RefinedScan {
@@ -64,8 +67,8 @@ PoseRegistration registerPoses(const ScanSet& scans, const RegistrationParams& p
 PoseRegistration measurePoses(const ScanSet& scans, const RegistrationParams& params, unsigned threads,
                               ProgressSink& sink);
 
-/// Up to three pairs of near scans spread over the set, to be measured where all would take too long. Empty when a scan
-/// has no pose, or there is only one.
+/// Up to three pairs of near scans spread over those with a pose, to be measured where all would take too long. Empty
+/// when fewer than two have one.
 std::vector<PosedScan> sampledNeighbours(const ScanSet& scans);
 
 /// Scans whose surfaces lie further apart have poses that do not fit each other.
