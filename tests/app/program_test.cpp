@@ -35,6 +35,7 @@ TEST_F(Program, BuildsAMapAndTellsSoInJson) {
   const Json clouds = Json::parse(run("info " + path("map.clx").string() + " --clouds --json").out).at("cloud_list");
   ASSERT_FALSE(clouds.empty());
   EXPECT_EQ(clouds[0].at("T_map_sensor")[3], Json({0.0, 0.0, 0.0, 1.0}));
+  for (const int axis : {0, 1, 2}) EXPECT_EQ(clouds[0].at("sensor")[axis], clouds[0].at("T_map_sensor")[axis][3]);
   EXPECT_NE(run("info " + path("map.clx").string() + " --clouds").out.find("sensor at "), std::string::npos);
 }
 
