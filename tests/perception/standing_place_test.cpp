@@ -30,7 +30,7 @@ Eigen::Vector3d endOf(const Eigen::Vector3d& start, const Eigen::Vector3d& way, 
 }
 
 bool looksAt(const ScanRays& rays, const StandingPlace& place, double view_m) {
-  return LookingRays(rays, view_m).lookAt(place);
+  return LookingRays(rays, view_m, {}).lookAt(place);
 }
 
 /// From all rays, without an index. Rays that start within `view_m` count, those of each of the starts by themselves.
@@ -126,15 +126,21 @@ bool isLookedAtByAny(const ScanRays& scan, const StandingPlace& place, double vi
 
 TEST(StandingPlace, IsLookedAtByRaysThatStartEverywhereAsAllOfThemTell) {
   std::mt19937 random(5);
-  const ScanRays scan(scanOfRays(raysFromEverywhere(15'000, 40, random)));
+  std::vector<Ray> rays = raysFromEverywhere(15'000, 40, random);
+  const ScanRays scan(scanOfRays(rays));
+  // In the frame of another origin, the squares in which rays start lie between its own.
+  const Eigen::Vector3d shift(5.25, -2.75, 0);
+  for (Ray& ray : rays) ray.start += shift, ray.end += shift;
+  const ScanRays shifted_scan(scanOfRays(rays));
   std::uniform_real_distribution<double> at(-22, 22), height(0, 3);
   std::array<int, 2> found{};
   for (const double view_m : {0.3, 2.0, 7.0, 25.0, 1e9}) {
-    const LookingRays looking(scan, view_m);
+    const LookingRays looking(scan, view_m, {}), shifted(shifted_scan, view_m, TileGrid::at(shift));
     for (int i = 0; i < 300; ++i) {
       const StandingPlace place{{at(random), at(random), 2 * height(random)}, height(random)};
       const bool expected = isLookedAtByAny(scan, place, view_m);
       ASSERT_EQ(looking.lookAt(place), expected) << place.foot.transpose() << ", " << place.height_m << ", " << view_m;
+      ASSERT_EQ(shifted.lookAt({place.foot + shift, place.height_m}), expected) << place.foot.transpose();
       ++found[expected ? 1 : 0];
     }
   }
@@ -145,7 +151,7 @@ TEST(StandingPlace, IsLookedAtByRaysThatStartEverywhereAsAllOfThemTell) {
 TEST(StandingPlace, AsksFewOfTheRaysThatStartEverywhere) {
   std::mt19937 random(6);
   const ScanRays scan(scanOfRays(raysFromEverywhere(20'000, 200, random)));
-  const LookingRays looking(scan, 25);
+  const LookingRays looking(scan, 25, {});
   std::size_t asked = 0, in_view = 0;
   std::uniform_real_distribution<double> at(-100, 100);
   for (int i = 0; i < 100; ++i) {

@@ -24,11 +24,13 @@ constexpr double kAlike_m = 2;           ///< rays that start so near to each ot
 using Bundles = std::vector<const RayBundle*>;
 
 /// Bundles by the square in which they start.
-std::vector<Bundles> byStart(const Bundles& near) {
+std::vector<Bundles> byStart(const Bundles& near, const TileGrid& grid) {
   std::map<std::pair<std::int64_t, std::int64_t>, Bundles> in_square;
   const auto number = [](double at) { return static_cast<std::int64_t>(std::floor(at / kAlike_m)); };
-  for (const RayBundle* bundle : near)
-    in_square[{number(bundle->origin().x()), number(bundle->origin().y())}].push_back(bundle);
+  for (const RayBundle* bundle : near) {
+    const Eigen::Vector3d start = grid.fromMap(bundle->origin());
+    in_square[{number(start.x()), number(start.y())}].push_back(bundle);
+  }
   std::vector<Bundles> starts;
   for (auto& [square, bundles] : in_square) starts.push_back(std::move(bundles));
   return starts;
@@ -71,10 +73,11 @@ std::vector<Eigen::Vector3d> pointsOf(const StandingPlace& place) {
   return points;
 }
 
-LookingRays::LookingRays(const ScanRays& rays, double view_m, const RayParams& params)
+LookingRays::LookingRays(const ScanRays& rays, double view_m, const TileGrid& grid, const RayParams& params)
     : view_m_(view_m),
       edge_m_(std::max(kRaySquare_m, view_m / 4)),
       beside_m_(std::max(kMeasured_m, params.near_m) + kRayRounding_m),
+      grid_(grid),
       params_(params) {
   for (const RayBundle& bundle : rays.bundles()) {
     const auto number = static_cast<std::uint32_t>(bundles_.size());
@@ -126,7 +129,7 @@ std::vector<const RayBundle*> LookingRays::bundlesNear(const StandingPlace& plac
 }
 
 bool LookingRays::lookAt(const StandingPlace& place) const {
-  const std::vector<Bundles> starts = byStart(bundlesNear(place));
+  const std::vector<Bundles> starts = byStart(bundlesNear(place), grid_);
   const std::vector<Eigen::Vector3d> points = pointsOf(place);
   return std::any_of(starts.begin(), starts.end(),
                      [&](const Bundles& bundles) { return areLookingAt(bundles, points, params_); });

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "perception/tile.hpp"
 #include "perception/visibility/scan_rays.hpp"
 
 namespace cluxel::perception {
@@ -30,9 +31,9 @@ std::vector<Eigen::Vector3d> pointsOf(const StandingPlace& place);
 /// pass far from a place, and few are asked about it.
 class LookingRays {
  public:
-  /// Rays that start further than `view_m` from a place, across the ground, do not count. `rays` must outlive this.
-  /// Cost: linear in the bundles.
-  LookingRays(const ScanRays& rays, double view_m, const RayParams& params = {});
+  /// Rays that start further than `view_m` from a place, across the ground, do not count. Squares in which rays start
+  /// count from the corner of the grid. `rays` must outlive this. Cost: linear in the bundles.
+  LookingRays(const ScanRays& rays, double view_m, const TileGrid& grid, const RayParams& params = {});
 
   /// Whether the rays tell what is at the place: one that passes it within half a metre ended `hit_m` before or behind
   /// it, or nearer; or `min_rays` that start in one square of 2 m passed it above the foot, and no more of those near
@@ -51,6 +52,7 @@ class LookingRays {
   void addSquaresOf(const RayBundle& bundle, const Eigen::Vector3f& ray, std::set<Square>& squares) const;
 
   double view_m_, edge_m_, beside_m_;
+  TileGrid grid_;
   RayParams params_;
   std::vector<const RayBundle*> bundles_;
   std::vector<std::uint32_t> large_;                           ///< numbers of bundles with many rays, ascending

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "mapping/regions/ground_heights.hpp"
+#include "mapping/stored_grid.hpp"
 #include "perception/visibility/sensor_sight.hpp"
 #include "perception/visibility/standing_place.hpp"
 
@@ -80,9 +81,9 @@ class PlacesBeside {
 };
 
 void markSeenBy(const scan::Scan& scan, const std::map<std::size_t, StandingPlace>& places, double view_m,
-                std::vector<bool>& is_seen) {
+                const perception::TileGrid& grid, std::vector<bool>& is_seen) {
   const perception::ScanRays rays(scan);
-  const perception::LookingRays looking(rays, view_m);
+  const perception::LookingRays looking(rays, view_m, grid);
   for (const auto& [number, place] : places)
     if (looking.lookAt(place)) is_seen[number] = true;
   if (!rays.empty()) return;
@@ -96,13 +97,14 @@ void markSeenBy(const scan::Scan& scan, const std::map<std::size_t, StandingPlac
 std::vector<bool> observedPlaces(const mapping::MapReader& map, const std::vector<AskedPlace>& places, double view_m) {
   std::vector<bool> is_seen(places.size(), false);
   if (places.empty()) return is_seen;
+  const perception::TileGrid grid = mapping::storedGrid(map.transaction());
   std::map<std::size_t, StandingPlace> open = standingPlaces(map, places);
   for (const mapping::Cloud& cloud : map.clouds()) {
     std::map<std::size_t, StandingPlace> near;
     for (const auto& [number, place] : open)
       if (mayLookAt(cloud, place, view_m)) near.emplace(number, place);
     if (near.empty()) continue;
-    markSeenBy(map.scanOf(cloud.id), near, view_m, is_seen);
+    markSeenBy(map.scanOf(cloud.id), near, view_m, grid, is_seen);
     std::erase_if(open, [&](const auto& asked) { return is_seen[asked.first]; });
   }
   return is_seen;
