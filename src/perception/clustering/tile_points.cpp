@@ -157,7 +157,10 @@ bool liesAt(const Eigen::Vector3d& corner, const Eigen::Vector3d& p_grid) {
 }  // namespace
 
 void describe(ThinParams& params, ParameterVisitor& visitor) {
-  visitor.real({"thin.voxel", "m", 0.01, 0.5, "edge of the voxels in which points are thinned"}, params.voxel_m);
+  visitor.real(
+      {"thin.voxel", "m", 0.01, 0.5,
+       "width of the voxels in which points are thinned; they are as high, rounded so that 16 m hold a whole number"},
+      params.voxel_m);
   visitor.whole({"thin.keep", "1", 1, 1000, "points kept in each voxel"}, params.keep);
 }
 

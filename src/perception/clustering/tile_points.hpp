@@ -19,7 +19,7 @@ namespace cluxel::perception {
 using scan::kMaxHeight_m;
 
 struct ThinParams {
-  double voxel_m = 0.05;  ///< edge of the voxels that are thinned
+  double voxel_m = 0.05;  ///< width of the voxels that are thinned; about as high
   int keep = 2;           ///< points kept per voxel
 };
 void describe(ThinParams& params, ParameterVisitor& visitor);
