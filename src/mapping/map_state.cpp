@@ -6,6 +6,7 @@
 
 #include "cluxel/error.hpp"
 #include "mapping/map_tables.hpp"
+#include "mapping/stored_grid.hpp"
 
 namespace cluxel::mapping {
 
@@ -140,7 +141,9 @@ MapInputs requireFinishedInputs(const rdf::ReadTransaction& transaction, const s
   if (!requireFinished(file, transaction))
     throw Error(ErrorKind::StoreUnavailable, file.string() + ": holds no map that a build has made; build one first");
   MapInputs inputs = storedInputs(transaction);
-  if (inputs.hash().hex() != storedState(transaction)->inputs_hash) refuseOtherVersion(file);
+  // Maps of earlier versions are read as they were written, where tiles may lie and heights be rounded otherwise.
+  if (inputs.hash().hex() != storedState(transaction)->inputs_hash || storedGrid(transaction) != inputs.tileGrid())
+    refuseOtherVersion(file);
   return inputs;
 }
 

@@ -12,11 +12,12 @@
 
 namespace cluxel::mapping::tables {
 
-/// "state", "inputs", "semantic state", "splits", "tiles", "grid", "facts"; "inferred": what a later inference needs to
-/// follow changes; "ways": what the facts about ways followed from.
+/// "state", "inputs", "semantic state", "splits", "tiles", "grid", "heights", "facts"; "inferred": what a later
+/// inference needs to follow changes; "ways": what the facts about ways followed from.
 inline constexpr std::string_view kMeta = "meta";
 inline constexpr std::string_view kTilesKey = "tiles";          ///< in kMeta: the tiles of the map
 inline constexpr std::string_view kGridKey = "grid";            ///< in kMeta: where the tiles lie
+inline constexpr std::string_view kHeightsKey = "heights";      ///< in kMeta: the step of local heights
 inline constexpr std::string_view kScans = "scans";             ///< scan id → description
 inline constexpr std::string_view kScanPoints = "scan_points";  ///< scan id → points in the sensor frame
 /// As kScans, of scans whose points were committed before them.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the tiles of a stored map lie.
+// Where the tiles of a stored map lie, and how local heights are rounded.
 #pragma once
 
 #include "perception/tile.hpp"
@@ -7,10 +7,11 @@
 
 namespace cluxel::mapping {
 
-/// Comes before the first scan is stored. A map whose origin lies at whole tiles stores nothing.
+/// Comes before the first scan is stored. Where the tiles lie is stored unless the origin lies at whole tiles; the step
+/// of local heights, unless they are as measured.
 void storeGrid(rdf::WriteTransaction& transaction, const perception::TileGrid& grid);
-/// Earlier versions had tiles at whole multiples of their size in the map frame, and stored no grid. So their maps are
-/// read as they were written. Throws Error (StoreUnavailable) when it is damaged.
+/// Earlier versions had tiles at whole multiples of their size in the map frame, and heights as measured, and stored
+/// neither. So their maps are read as they were written. Throws Error (StoreUnavailable) when it is damaged.
 perception::TileGrid storedGrid(const rdf::ReadTransaction& transaction);
 
 }  // namespace cluxel::mapping

@@ -22,7 +22,8 @@ struct TileKey {
 };
 
 /// Where the tiles of a map lie. Their borders are at whole multiples of the tile size in the outer frame, and so is
-/// the height from which slices are counted: another origin of the map frame moves them with the points.
+/// the height from which slices are counted: another origin of the map frame moves them with the points. It also knows
+/// how local coordinates are rounded, because whoever finds the tile of a point needs these.
 class TileGrid {
  public:
   /// The map frame is the outer frame, or its origin lies at whole tiles.
@@ -34,10 +35,20 @@ class TileGrid {
     grid.corner_ = corner;
     return grid;
   }
+  /// The same tiles in a map of stages 20 or earlier, whose local heights are the nearest floats.
+  TileGrid withHeightsAsMeasured() const {
+    TileGrid grid = *this;
+    grid.rounds_heights_ = false;
+    return grid;
+  }
 
   /// The corner of tile (0, 0), which holds the map's origin [m, map]. Zero when the origin lies at whole tiles.
   const Eigen::Vector3d& corner() const { return corner_; }
-  bool operator==(const TileGrid& other) const { return corner_ == other.corner_; }
+  /// Whether local heights are rounded to kHeightStep_m (local_steps.hpp).
+  bool roundsHeights() const { return rounds_heights_; }
+  bool operator==(const TileGrid& other) const {
+    return corner_ == other.corner_ && rounds_heights_ == other.rounds_heights_;
+  }
 
   /// A point of the map relative to corner() [m]. Unless that is zero, it is rounded to 15 nm: scanners and files
   /// round coordinates, so that many lie on borders of tiles and voxels, and must stay there.
@@ -64,6 +75,7 @@ class TileGrid {
 
  private:
   Eigen::Vector3d corner_ = Eigen::Vector3d::Zero();
+  bool rounds_heights_ = true;
 };
 
 inline TileGrid::TileGrid(const Eigen::Vector3d& map_origin) {

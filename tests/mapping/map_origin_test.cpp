@@ -284,6 +284,24 @@ TEST_F(MapOrigin, AtWholeTilesStoresNoGrid) {
   }
 }
 
+/// Earlier versions put the tiles of such a map elsewhere. They are read there; what follows from them cannot change.
+TEST_F(MapOrigin, OfAMapOfAnEarlierVersionRefusesChangesBetweenTiles) {
+  const fs::path map = built(scansWith(kReference_m + Eigen::Vector3d(1, 0, 0), {0}));
+  {
+    const auto environment = Environment::open(map, OpenMode::ReadWrite);
+    WriteTransaction transaction = environment->write();
+    storeGrid(transaction, {});
+    transaction.commit();
+  }
+  EXPECT_EQ(storedGrid(MapReader(map).transaction()), TileGrid());
+  try {
+    extendMap(map, scansWith(kReference_m + Eigen::Vector3d(1, 0, 0), {1}), {}, silence());
+    FAIL() << "tiles of two grids are in one map";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("another version"), std::string::npos) << error.what();
+  }
+}
+
 TEST(TileGrid, KeepsPointsOnBordersWhereTheyAre) {
   for (const Eigen::Vector3d& shift : {Eigen::Vector3d(5.3, -2.7, 0.4), Eigen::Vector3d(0.01, 7.999, 3)}) {
     const Eigen::Vector3d origin = kReference_m + shift;

@@ -74,6 +74,30 @@ TEST(TilePoints, ThinnedHigherByWholeTilesAreTheSame) {
   }
 }
 
+TEST(TilePoints, OfAnEarlierMapHaveHeightsAsMeasured) {
+  const Scan scan = scanOf(streetPoints(1));
+  const TileGrid grid = TileGrid().withHeightsAsMeasured();
+  std::size_t between_steps = 0;
+  for (const auto& [key, segment] : splitScan(scan, grid)) {
+    TilePoints tile = tilePointsFromBytes(toBytes(thin(key, std::array{&segment}, {})));
+    PointsFromScans from_scans(grid);
+    from_scans.add(tile);
+    from_scans.fill(scan);
+    for (std::size_t i = 0; i < tile.size(); ++i) {
+      const float z = scan.points.z[tile.point[i]];
+      EXPECT_EQ(tile.z[i], z);
+      between_steps += z / kHeightStep_m != std::round(z / kHeightStep_m) ? 1 : 0;
+    }
+    for (std::size_t i = 0; i < segment.size(); ++i) {
+      const std::uint32_t point = segment.point[i];
+      const Eigen::Vector3d p =
+          toMap(scan.T_map_sensor, {scan.points.x[point], scan.points.y[point], scan.points.z[point]});
+      EXPECT_EQ(localPoint(grid, key, p), Eigen::Vector3f(segment.x[i], segment.y[i], segment.z[i]));
+    }
+  }
+  EXPECT_GT(between_steps, 100U);
+}
+
 /// Relative to the corner at -16 m they round to the tile's upper edge, though they belong to that tile.
 TEST(TilePoints, PointsJustBelowZeroStayInTheirTile) {
   Scan scan = scanOf({{-1e-20F, -1e-20F, 0.5F},

@@ -34,7 +34,8 @@ bool holdsNothing(const rdf::ReadTransaction& transaction) {
   bool has_blocks = false;
   for (const std::string_view table : {tables::kMeta, tables::kScans})
     transaction.forEachBlock(table, "", [&](std::string_view key, std::string_view) {
-      has_blocks = has_blocks || table != tables::kMeta || key != tables::kGridKey;  // early commits keep the grid
+      const bool is_of_grid = key == tables::kGridKey || key == tables::kHeightsKey;  // early commits keep these
+      has_blocks = has_blocks || table != tables::kMeta || !is_of_grid;
     });
   const rdf::QuadReader quads(transaction);
   return !has_blocks && quads.size() == 0 && quads.termCount() == 0;

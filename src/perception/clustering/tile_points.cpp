@@ -137,7 +137,7 @@ Eigen::Vector3d cornerInGrid(const TileKey& key) {
 }
 
 /// As floats relative to a tile's corner; both in the frame of the grid.
-Eigen::Vector3f relativeTo(const Eigen::Vector3d& corner, const Eigen::Vector3d& p_grid) {
+Eigen::Vector3f relativeTo(const Eigen::Vector3d& corner, const Eigen::Vector3d& p_grid, const TileGrid& grid) {
   const Eigen::Vector3d p = p_grid - corner;
   // Just below the upper edge, rounding could give the edge itself, which belongs to the next tile.
   static constexpr auto kLastStep = static_cast<std::int64_t>(kTileSize_m / kLocalStep_m) - 1;
@@ -145,7 +145,7 @@ Eigen::Vector3f relativeTo(const Eigen::Vector3d& corner, const Eigen::Vector3d&
     return static_cast<float>(static_cast<double>(std::min(fastFloor(value_m / kLocalStep_m), kLastStep)) *
                               kLocalStep_m);
   };
-  return {rounded(p.x()), rounded(p.y()), toHeightStep(p.z())};
+  return {rounded(p.x()), rounded(p.y()), grid.roundsHeights() ? toHeightStep(p.z()) : static_cast<float>(p.z())};
 }
 
 /// Whether tileOf() gives the tile with this corner. Corners in the grid and the tile size are exact.
@@ -165,7 +165,7 @@ void describe(ThinParams& params, ParameterVisitor& visitor) {
 }
 
 Eigen::Vector3f localPoint(const TileGrid& grid, const TileKey& key, const Eigen::Vector3d& p_map) {
-  return relativeTo(cornerInGrid(key), grid.fromMap(p_map));
+  return relativeTo(cornerInGrid(key), grid.fromMap(p_map), grid);
 }
 
 std::map<TileKey, ScanSegment> splitScan(const scan::Scan& scan, const TileGrid& grid) {
@@ -184,7 +184,7 @@ std::map<TileKey, ScanSegment> splitScan(const scan::Scan& scan, const TileGrid&
       segment->key = key;
       segment->scan = scan.id;
     }
-    const Eigen::Vector3f p = relativeTo(corner, p_grid);
+    const Eigen::Vector3f p = relativeTo(corner, p_grid, grid);
     segment->x.push_back(p.x());
     segment->y.push_back(p.y());
     segment->z.push_back(p.z());
@@ -255,7 +255,7 @@ void PointsFromScans::fill(const scan::Scan& scan) const {
       const Eigen::Vector3d p_map = scan::toMap(scan.T_map_sensor, {points.x[at], points.y[at], points.z[at]});
       const Eigen::Vector3d p_grid = grid_.fromMap(p_map);
       if (!liesAt(corner, p_grid) || !scan::isInMapRange(p_map)) throw strayPoint(scan, at);
-      const Eigen::Vector3f p = relativeTo(corner, p_grid);
+      const Eigen::Vector3f p = relativeTo(corner, p_grid, grid_);
       tile->x[i] = p.x(), tile->y[i] = p.y(), tile->z[i] = p.z();
       if (!tile->intensity.empty()) tile->intensity[i] = points.intensity.empty() ? 0.0F : points.intensity[at];
       tile->rank[i] = rankOf(points, at);
