@@ -7,9 +7,11 @@
 #include <set>
 
 #include "cluxel/error.hpp"
+#include "mapping/build/cluxel_finder.hpp"
 #include "mapping/build/way_tiles.hpp"
 #include "mapping/clouds/scan_store.hpp"
 #include "mapping/commit_layers.hpp"
+#include "mapping/damaged_map.hpp"
 #include "mapping/facts/object_geometry.hpp"
 #include "mapping/layers/stored_layers.hpp"
 #include "mapping/map_part.hpp"
@@ -289,14 +291,15 @@ PointAnswers MapReader::answersFor(const Cloud& cloud) const {
   const perception::ThinParams& thin = model().perception.thin;
   const scan::ScanPoints points = pointsOf(cloud.id);
   const perception::TileGrid& grid = stages.grid();
-  std::map<perception::TileKey, perception::RepresentativeFinder> finders;
+  std::map<perception::TileKey, CluxelFinder> finders;
   PointAnswers answers;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Eigen::Vector3d p_map = scan::toMap(cloud.T_map_sensor, {points.x[i], points.y[i], points.z[i]});
     const perception::TileKey tile = grid.tileOf(p_map);
-    const auto finder = finders.try_emplace(tile, stages.points().at(tile), thin).first;
-    const std::uint32_t kept = finder->second.find(localPoint(grid, tile, p_map));
-    const std::uint32_t cluxel = numbers.first_of_tile.at(tile) + stages.cluxels().at(tile).point_cluxel.at(kept);
+    const auto first = numbers.first_of_tile.find(tile);
+    if (first == numbers.first_of_tile.end()) refuseDamaged(cloud.source + ": has points in tiles that are not there");
+    const CluxelFinder& finder = finders.try_emplace(tile, grid, stages, tile, thin).first->second;
+    const std::uint32_t cluxel = first->second + finder.cluxelOf(p_map);
     answers.cluxel.push_back(cluxel);
     answers.label.push_back(static_cast<std::uint8_t>(all.cluxels.label[cluxel]));
     answers.object.push_back(numbers.object[cluxel]);

@@ -12,6 +12,7 @@
 
 #include "base/free_memory.hpp"
 #include "base/sorting/temporary_bytes.hpp"
+#include "mapping/build/cluxel_finder.hpp"
 #include "mapping/build/tile_stages.hpp"
 #include "mapping/damaged_map.hpp"
 #include "mapping/layers/stored_layers.hpp"
@@ -46,8 +47,7 @@ struct AnswerPiece {
 
 /// What the map says about the cluxels of one tile.
 struct AnsweringTile {
-  perception::RepresentativeFinder finder;
-  const perception::CluxelTile* cluxels;
+  CluxelFinder finder;
   perception::LabelTile labels;
   std::vector<std::uint32_t> object;  ///< by cluxel: number in MapReader::objects(), or kNoObjectOfPoint
   std::uint32_t first_cluxel;         ///< in MapReader::scene()
@@ -62,15 +62,13 @@ class RegionAnswers {
     stages.loadPoints(map.transaction(), tiles);
     for (const TileKey& tile : tiles) {
       const std::string_view labels = requiredBlock(map.transaction(), tables::kLabels, tile);
-      const auto cluxels = stages.cluxels().find(tile);
-      if (cluxels == stages.cluxels().end()) refuseIncompleteTile();
-      AnsweringTile answering{{stages.points().at(tile), map.model().perception.thin},
-                              &cluxels->second,
+      AnsweringTile answering{{grid_, stages, tile, map.model().perception.thin},
                               ofTile(tile, perception::labelTileFromBytes(labels)),
                               objectsInTile(map, tile),
                               first_cluxel.at(tile)};
-      const std::size_t count = cluxels->second.size();
-      if (answering.labels.label.size() != count || answering.object.size() != count) failUnfit();
+      const std::size_t count = stages.cluxels().at(tile).size();
+      if (answering.labels.label.size() != count || answering.object.size() != count)
+        refuseDamaged("a stored tile does not fit its cluxels");
       tiles_.emplace(tile, std::move(answering));
     }
   }
@@ -86,9 +84,7 @@ class RegionAnswers {
       if (tile == tiles_.end() || tile->first != key) tile = tiles_.find(key);
       if (tile == tiles_.end()) continue;
       const AnsweringTile& here = tile->second;
-      const std::uint32_t kept = here.finder.find(perception::localPoint(grid_, key, p_map));
-      if (kept >= here.cluxels->point_cluxel.size()) failUnfit();
-      const std::uint32_t cluxel = here.cluxels->point_cluxel[kept];
+      const std::uint32_t cluxel = here.finder.cluxelOf(p_map);
       if (only && here.object.at(cluxel) != *only) continue;
       piece.add(i, here.first_cluxel + cluxel, here.labels.label.at(cluxel), here.object.at(cluxel));
     }
@@ -96,8 +92,6 @@ class RegionAnswers {
   }
 
  private:
-  [[noreturn]] static void failUnfit() { refuseDamaged("a stored tile does not fit its points"); }
-
   perception::TileGrid grid_;
   std::map<TileKey, AnsweringTile> tiles_;
 };

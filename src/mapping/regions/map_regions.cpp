@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "mapping/build/cluxel_finder.hpp"
 #include "mapping/build/tile_stages.hpp"
 #include "mapping/damaged_map.hpp"
 #include "mapping/facts/object_geometry.hpp"
@@ -38,8 +39,7 @@ Eigen::AlignedBox2d areaOf(const TileSet& tiles, const perception::TileGrid& gri
 
 struct MapRegions::RegionPoints {
   struct Tile {
-    perception::RepresentativeFinder finder;
-    const perception::CluxelTile* cluxels;
+    CluxelFinder finder;
     std::uint32_t first;  ///< cluxel in the scene of the region
   };
   std::map<TileKey, Tile> tiles;
@@ -121,8 +121,8 @@ void MapRegions::readPoints(const MapRegion& region) {
   std::uint32_t first = 0;
   for (const auto& [tile, summary] : stages_->summaries()) {
     if (region.tiles.contains(tile)) {
-      const perception::RepresentativeFinder finder(stages_->points().at(tile), map_.model().perception.thin);
-      points_->tiles.emplace(tile, RegionPoints::Tile{finder, &stages_->cluxels().at(tile), first});
+      const CluxelFinder finder(region.scene.cluxels.grid, *stages_, tile, map_.model().perception.thin);
+      points_->tiles.emplace(tile, RegionPoints::Tile{finder, first});
     }
     first += static_cast<std::uint32_t>(summary.size());
   }
@@ -139,8 +139,7 @@ void MapRegions::forEachPoint(const MapRegion& region, const Cloud& cloud, const
     const TileKey key = grid.tileOf(p_map);
     const auto tile = points_->tiles.find(key);
     if (tile == points_->tiles.end()) continue;
-    const std::uint32_t kept = tile->second.finder.find(perception::localPoint(grid, key, p_map));
-    visit(p_map, tile->second.first + tile->second.cluxels->point_cluxel.at(kept), i);
+    visit(p_map, tile->second.first + tile->second.finder.cluxelOf(p_map), i);
   }
 }
 

@@ -126,10 +126,8 @@ std::vector<std::uint32_t> PointOwners::cluxelsOf(const PointAnchor& anchor) {
     const perception::TileKey tile = grid_.tileOf(p_map);
     const auto first = first_cluxel_.find(tile);
     if (first == first_cluxel_.end()) return;
-    const auto finder = finders_.try_emplace(tile, stages_.points().at(tile), thin_).first;
-    const std::uint32_t kept = finder->second.find(perception::localPoint(grid_, tile, p_map));
-    if (kept != perception::RepresentativeFinder::kNone)
-      cluxels.push_back(first->second + stages_.cluxels().at(tile).point_cluxel[kept]);
+    const CluxelFinder& finder = finders_.try_emplace(tile, grid_, stages_, tile, thin_).first->second;
+    cluxels.push_back(first->second + finder.cluxelOf(p_map));
   });
   return cluxels;
 }

@@ -6,7 +6,7 @@
 #include <map>
 #include <vector>
 
-#include "mapping/build/tile_stages.hpp"
+#include "mapping/build/cluxel_finder.hpp"
 #include "mapping/clouds/cloud.hpp"
 #include "mapping/statements/statement.hpp"
 #include "rules/objects/semantic_object.hpp"
@@ -31,7 +31,8 @@ class PointOwners {
               const std::vector<Cloud>& clouds);
 
   /// The numbers of the scene's cluxels that hold the points, one for each point that the scene has. Points of scans
-  /// that the map does not have are left out. Cost: one reading of each scan and tile that is named, the first time.
+  /// that the map does not have are left out. Throws Error
+  /// (StoreUnavailable) as CluxelFinder does. Cost: one reading of each scan and tile that is named, the first time.
   std::vector<std::uint32_t> cluxelsOf(const PointAnchor& anchor);
   /// The tiles in which the points lie, held or not.
   perception::TileSet tilesOf(const PointAnchor& anchor);
@@ -53,7 +54,7 @@ class PointOwners {
   perception::ThinParams thin_;
   const std::vector<Cloud>& clouds_;
   std::map<perception::TileKey, std::uint32_t> first_cluxel_;
-  std::map<perception::TileKey, perception::RepresentativeFinder> finders_;
+  std::map<perception::TileKey, CluxelFinder> finders_;
   std::map<scan::ScanId, Posed> scans_;
 };
 
