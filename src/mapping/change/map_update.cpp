@@ -77,8 +77,9 @@ rdf::WriteTransaction writeOrCopy(const std::filesystem::path& file, bool is_dry
   return rdf::Environment::temporaryCopyOf(target)->write();
 }
 
-ChangeReport inferAfterUpdate(rdf::WriteTransaction& transaction, const std::set<rdf::QuadIds>& before,
-                              ProgressSink& sink, const rdf::InferenceCheck& check, const MapUpdateParams& params) {
+ChangeReport inferAfterUpdate(rdf::WriteTransaction& transaction, const std::filesystem::path& file,
+                              const std::set<rdf::QuadIds>& before, ProgressSink& sink,
+                              const rdf::InferenceCheck& check, const MapUpdateParams& params) {
   const ParsedInputs parsed = parseInputs(storedInputs(transaction));
   anchorStatedObjects(transaction, parsed, before, sink);
   const bool has_news = takeNewStatements(transaction, parsed.rules.catalogue, params.author, sink);
@@ -92,6 +93,7 @@ ChangeReport inferAfterUpdate(rdf::WriteTransaction& transaction, const std::set
     report.statements = toldOutcomes(rdf::QuadReader(static_cast<const rdf::ReadTransaction&>(transaction)));
     return report;
   }
+  requireFinishedInputs(transaction, file);  // what is decided anew must fit what is kept
   const double started_s = secondsNow();
   StageClock clock(sink);
   TileStages stages(parsed.model, parsed.inputs.params);
@@ -138,7 +140,7 @@ MapUpdateReport updateMap(const std::filesystem::path& file, const std::string& 
   if (deleted) report.deleted += deleted->withdraw(transaction, notes);
   if (is_map && report.inserted + report.deleted > 0) {
     try {
-      report.change = inferAfterUpdate(transaction, before, notes, check, params);
+      report.change = inferAfterUpdate(transaction, file, before, notes, check, params);
     } catch (const RefusedQuad& refused) {
       throw InputError({.file = options.query.source_name}, refused.what());
     }

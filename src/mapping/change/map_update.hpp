@@ -33,15 +33,17 @@ rdf::WriteTransaction writeOrCopy(const std::filesystem::path& file, bool is_dry
 /// Runs a SPARQL Update on a map or another quad file. In a map, what follows is inferred, SPARQL rules included, and
 /// the objects around new and withdrawn statements are decided again; when its rules use `ask:`, all objects are,
 /// because answers may have changed. Commits everything or nothing. Throws as runUpdate(); Error (InvalidArgument) when
-/// a build of the map is unfinished, or all graphs of a map are to be writable. Deadline and budget of memory cover
+/// a build of the map is unfinished, when it is of another version and would be decided anew, or when all graphs of a
+/// map are to be writable. Deadline and budget of memory cover
 /// what is inferred, the queries of SPARQL rules included.
 MapUpdateReport updateMap(const std::filesystem::path& file, const std::string& update,
                           const sparql::UpdateOptions& options, ProgressSink& sink, const MapUpdateParams& params = {});
 
 /// Computes again what follows from the operator's statements of a map. `before`: quadsThatNameResources() before the
-/// update; those that the update added are anchored.
-ChangeReport inferAfterUpdate(rdf::WriteTransaction& transaction, const std::set<rdf::QuadIds>& before,
-                              ProgressSink& sink, const rdf::InferenceCheck& check = {},
-                              const MapUpdateParams& params = {});
+/// update; those that the update added are anchored. Throws Error (InvalidArgument), naming `file`, when objects of a
+/// map of another version would be decided anew.
+ChangeReport inferAfterUpdate(rdf::WriteTransaction& transaction, const std::filesystem::path& file,
+                              const std::set<rdf::QuadIds>& before, ProgressSink& sink,
+                              const rdf::InferenceCheck& check = {}, const MapUpdateParams& params = {});
 
 }  // namespace cluxel::mapping

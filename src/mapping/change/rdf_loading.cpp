@@ -122,7 +122,7 @@ RdfLoadReport load(rdf::WriteTransaction& transaction, const fs::path& store, co
   }
   report.added = reader.size() - before;
   if (is_map && report.added > 0)
-    report.change = inferAfterUpdate(transaction, named_before, notes, {}, {.operation = "load"});
+    report.change = inferAfterUpdate(transaction, store, named_before, notes, {}, {.operation = "load"});
   if (is_map && !report.change.has_changes) tellMap(report.change, transaction);
   if (is_map) noteStandingQuads(transaction, named_before, notes);
   return report;
