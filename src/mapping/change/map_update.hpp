@@ -34,8 +34,7 @@ rdf::WriteTransaction writeOrCopy(const std::filesystem::path& file, bool is_dry
 /// the objects around new and withdrawn statements are decided again; when its rules use `ask:`, all objects are,
 /// because answers may have changed. Commits everything or nothing. Throws as runUpdate(); Error (InvalidArgument) when
 /// a build of the map is unfinished, when it is of another version and would be decided anew, or when all graphs of a
-/// map are to be writable. Deadline and budget of memory cover
-/// what is inferred, the queries of SPARQL rules included.
+/// map are to be writable. Deadline and budget of memory cover what is inferred, the queries of SPARQL rules included.
 MapUpdateReport updateMap(const std::filesystem::path& file, const std::string& update,
                           const sparql::UpdateOptions& options, ProgressSink& sink, const MapUpdateParams& params = {});
 
