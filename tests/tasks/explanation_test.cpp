@@ -13,6 +13,7 @@
 #include "mapping/asking_rules.hpp"
 #include "mapping/build/tile_stages.hpp"
 #include "mapping/clouds/scan_store.hpp"
+#include "mapping/long_tests.hpp"
 #include "mapping/map_part.hpp"
 #include "rdf/map_iris.hpp"
 #include "rules/decide/local_reach.hpp"
@@ -162,7 +163,12 @@ bool isToldInPart(const MapReader& map, const SemanticObject& object, const Rule
 
 /// Why a thing is of no other class is told from some tiles, too.
 TEST_F(ExplanationOfALongMap, WhyNotReadsSomeTilesAndSaysWhatTheWholeMapSays) {
-  build({.seed = 5, .stops = 20, .size_m = 270, .points_per_stop = 5000, .max_range_m = 16, .stop_distance_m = 20});
+  build({.seed = 5,
+         .stops = isLong() ? 30.0 : 20.0,
+         .size_m = isLong() ? 400.0 : 270.0,
+         .points_per_stop = 5000,
+         .max_range_m = 16,
+         .stop_distance_m = 20});
   const ReasoningResult made = reason(map->scene(), rules);
   constexpr std::array<const char*, 3> kClasses{"StreetLamp", "Building", "SmallObject"};
   std::size_t in_part = 0, number = 0;
@@ -190,6 +196,7 @@ std::vector<std::string> explainedWith(const MapReader& map, const ExplainedClux
 }
 
 TEST_F(ExplanationOfALongMap, OfAllObjectsIsTheSameRegionByRegion) {
+  build();
   const std::vector<std::string> whole = explainObjects(*map);
   const std::size_t all = map->scene().cluxels.size();
   EXPECT_EQ(explainedWith(*map, {all, 1}), whole) << "at once";
@@ -198,6 +205,7 @@ TEST_F(ExplanationOfALongMap, OfAllObjectsIsTheSameRegionByRegion) {
 }
 
 TEST_F(ExplanationOfALongMap, ASingleTileExplainsOnlyWhatItDecidesAsTheMapDid) {
+  build();
   const std::vector<std::string> whole = explainObjects(*map);
   std::size_t asked_about = 0, told_about = 0;
   for (const TileKey& tile : storedTiles(map->transaction())) {
