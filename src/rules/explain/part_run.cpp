@@ -34,99 +34,18 @@ std::vector<const Rule*> rulesOfCluxels(const std::vector<SemanticObject>& objec
   return owners;
 }
 
-class PartSearch {
- public:
-  PartSearch(const perception::Scene& scene, const RuleSet& rules, const WholeRun& whole,
-             const std::vector<perception::PrimitiveIndex>& primitives)
-      : scene_(scene),
-        rules_(rules),
-        traces_(whole.traces),
-        owners_(rulesOfCluxels(whole.objects, rules, scene.cluxels.size())),
-        primitives_(primitives) {
-    for (const perception::PrimitiveIndex primitive : primitives) box_.extend(boxOf(scene.primitives[primitive]));
-  }
-
-  /// The primitives within the margin; empty when they are most of the scene.
-  std::vector<perception::PrimitiveIndex> within(double margin_m, double max_share) const {
-    std::vector<perception::PrimitiveIndex> kept;
-    std::size_t cluxels = 0;
-    const Box around = grown(box_, margin_m);
-    for (perception::PrimitiveIndex i = 0; i < scene_.primitives.size(); ++i)
-      if (around.intersects(boxOf(scene_.primitives[i]))) {
-        kept.push_back(i);
-        cluxels += scene_.primitives[i].cluxels.size();
-      }
-    if (static_cast<double>(cluxels) > max_share * static_cast<double>(scene_.cluxels.size())) kept.clear();
-    return kept;
-  }
-
-  /// Whether the run over the part took the decisions of the whole run about what is explained and about the seeds of
-  /// the objects that own it, and gave every cluxel around it to the same rule. The traces there may differ: the
-  /// ground reaches far beyond every part.
-  bool agrees(const std::vector<perception::PrimitiveIndex>& kept, const perception::Scene& part,
-              const ReasoningResult& result) const {
-    const std::vector<std::uint64_t>& found = result.traces;
-    const std::vector<perception::PrimitiveIndex> told = toldAbout(numbersIn(kept), result);
-    return std::all_of(told.begin(), told.end(), [&](auto i) { return found[i] == traces_[kept[i]]; }) &&
-           hasSameOwners(kept, part, result);
-  }
-
-  /// The explained primitives by their numbers in the part.
-  std::vector<perception::PrimitiveIndex> numbersIn(const std::vector<perception::PrimitiveIndex>& kept) const {
-    std::vector<perception::PrimitiveIndex> numbers;
-    for (const perception::PrimitiveIndex primitive : primitives_)
-      numbers.push_back(static_cast<perception::PrimitiveIndex>(std::lower_bound(kept.begin(), kept.end(), primitive) -
-                                                                kept.begin()));
-    return numbers;
-  }
-
- private:
-  /// Those that are explained, and the seeds of their owners' decisions: an explanation tells these too.
-  static std::vector<perception::PrimitiveIndex> toldAbout(const std::vector<perception::PrimitiveIndex>& explained,
-                                                           const ReasoningResult& result) {
-    std::vector<perception::PrimitiveIndex> told = explained;
-    for (const SemanticObject& object : result.objects) {
-      const std::vector<perception::PrimitiveIndex> own = primitivesOf(object);
-      const std::vector<perception::PrimitiveIndex>& seeds = result.decisions[object.decision].seeds;
-      if (std::find_first_of(own.begin(), own.end(), explained.begin(), explained.end()) != own.end())
-        told.insert(told.end(), seeds.begin(), seeds.end());
-    }
-    return told;
-  }
-
-  bool hasSameOwners(const std::vector<perception::PrimitiveIndex>& kept, const perception::Scene& part,
-                     const ReasoningResult& result) const {
-    const std::vector<const Rule*> owners = rulesOfCluxels(result.objects, rules_, part.cluxels.size());
-    const Box checked = grown(box_, kSameOwnersWithin_m);
-    for (std::size_t i = 0; i < kept.size(); ++i) {
-      const std::vector<std::uint32_t>&here = part.primitives[i].cluxels, &there = scene_.primitives[kept[i]].cluxels;
-      for (std::size_t c = 0; c < here.size(); ++c)
-        if (owners[here[c]] != owners_[there[c]] &&
-            checked.contains(Eigen::Vector2d(part.cluxels.center[here[c]].head<2>())))
-          return false;
-    }
-    return true;
-  }
-
-  const perception::Scene& scene_;
-  const RuleSet& rules_;
-  const std::vector<std::uint64_t>& traces_;
-  std::vector<const Rule*> owners_;  ///< by cluxel of the whole scene
-  const std::vector<perception::PrimitiveIndex>& primitives_;
-  Box box_;
-};
-
-/// Compares a run over a part with the whole run, object by object: as PartSearch::agrees(), for many objects.
+/// Compares a run over a part with the whole run. They agree about primitives when their traces, and those of the seeds
+/// of the objects that own them, are the same (an explanation tells these seeds, too), and when the same rules, or
+/// none, got every cluxel around them. The traces around them may differ: the ground reaches far beyond every part.
 class PartComparison {
  public:
-  PartComparison(const perception::Scene& part, const RuleSet& rules, const WholeRun& whole,
-                 const ReasoningResult& result)
-      : part_(part), traces_(whole.traces), result_(result) {
-    const std::size_t cluxels = part.cluxels.size();
-    const std::vector<const Rule*> there = rulesOfCluxels(whole.objects, rules, cluxels),
-                                   here = rulesOfCluxels(result.objects, rules, cluxels);
-    for (std::size_t c = 0; c < cluxels; ++c)
-      if (there[c] != here[c]) decided_otherwise_.emplace_back(part.cluxels.center[c].head<2>());
+  /// `traces` and `owners`: of the whole run, by the part's primitives and cluxels.
+  PartComparison(const perception::Scene& part, const RuleSet& rules, const std::vector<std::uint64_t>& traces,
+                 const std::vector<const Rule*>& owners, const ReasoningResult& result)
+      : part_(part), traces_(traces), result_(result) {
+    const std::vector<const Rule*> found = rulesOfCluxels(result.objects, rules, owners.size());
+    for (std::size_t c = 0; c < owners.size(); ++c)
+      if (owners[c] != found[c]) decided_otherwise_.emplace_back(part.cluxels.center[c].head<2>());
     for (const SemanticObject& object : result.objects)
       for (const perception::PrimitiveIndex primitive : primitivesOf(object)) owners_[primitive].push_back(&object);
   }
@@ -162,6 +81,63 @@ class PartComparison {
   std::unordered_map<perception::PrimitiveIndex, std::vector<const SemanticObject*>> owners_;
 };
 
+class PartSearch {
+ public:
+  PartSearch(const perception::Scene& scene, const RuleSet& rules, const WholeRun& whole,
+             const std::vector<perception::PrimitiveIndex>& primitives)
+      : scene_(scene),
+        rules_(rules),
+        traces_(whole.traces),
+        owners_(rulesOfCluxels(whole.objects, rules, scene.cluxels.size())),
+        primitives_(primitives) {
+    for (const perception::PrimitiveIndex primitive : primitives) box_.extend(boxOf(scene.primitives[primitive]));
+  }
+
+  /// The primitives within the margin; empty when they are most of the scene.
+  std::vector<perception::PrimitiveIndex> within(double margin_m, double max_share) const {
+    std::vector<perception::PrimitiveIndex> kept;
+    std::size_t cluxels = 0;
+    const Box around = grown(box_, margin_m);
+    for (perception::PrimitiveIndex i = 0; i < scene_.primitives.size(); ++i)
+      if (around.intersects(boxOf(scene_.primitives[i]))) {
+        kept.push_back(i);
+        cluxels += scene_.primitives[i].cluxels.size();
+      }
+    if (static_cast<double>(cluxels) > max_share * static_cast<double>(scene_.cluxels.size())) kept.clear();
+    return kept;
+  }
+
+  /// Whether the run over the part decided as the whole run about what is explained, and around it.
+  bool agrees(const std::vector<perception::PrimitiveIndex>& kept, const perception::Scene& part,
+              const ReasoningResult& result) const {
+    std::vector<std::uint64_t> traces;
+    std::vector<const Rule*> owners(part.cluxels.size(), nullptr);
+    for (std::size_t i = 0; i < kept.size(); ++i) {
+      traces.push_back(traces_[kept[i]]);
+      const std::vector<std::uint32_t>&here = part.primitives[i].cluxels, &there = scene_.primitives[kept[i]].cluxels;
+      for (std::size_t c = 0; c < here.size(); ++c) owners[here[c]] = owners_[there[c]];
+    }
+    return PartComparison(part, rules_, traces, owners, result).agreesAbout(numbersIn(kept));
+  }
+
+  /// The explained primitives by their numbers in the part.
+  std::vector<perception::PrimitiveIndex> numbersIn(const std::vector<perception::PrimitiveIndex>& kept) const {
+    std::vector<perception::PrimitiveIndex> numbers;
+    for (const perception::PrimitiveIndex primitive : primitives_)
+      numbers.push_back(static_cast<perception::PrimitiveIndex>(std::lower_bound(kept.begin(), kept.end(), primitive) -
+                                                                kept.begin()));
+    return numbers;
+  }
+
+ private:
+  const perception::Scene& scene_;
+  const RuleSet& rules_;
+  const std::vector<std::uint64_t>& traces_;
+  std::vector<const Rule*> owners_;  ///< by cluxel of the whole scene
+  const std::vector<perception::PrimitiveIndex>& primitives_;
+  Box box_;
+};
+
 }  // namespace
 
 std::vector<std::optional<Explanation>> explainInPart(const perception::Scene& part, const RuleSet& rules,
@@ -175,7 +151,8 @@ std::vector<std::optional<Explanation>> explainInPart(const perception::Scene& p
   probing.probes.erase(std::unique(probing.probes.begin(), probing.probes.end()), probing.probes.end());
   probing.splits = whole.splits;
   const ReasoningResult result = reason(part, rules, probing);
-  const PartComparison comparison(part, rules, whole, result);
+  const PartComparison comparison(part, rules, whole.traces, rulesOfCluxels(whole.objects, rules, part.cluxels.size()),
+                                  result);
   for (std::size_t i = 0; i < asked.size(); ++i)
     if (!asked[i].primitives.empty() && comparison.agreesAbout(asked[i].primitives))
       explanations[i] = explanationIn(result, rules, asked[i].id);
