@@ -41,7 +41,8 @@ std::uint8_t levelOf(std::uint64_t hash) {
 }
 
 std::uint8_t heightByte(double height_m) {
-  return static_cast<std::uint8_t>(std::clamp(std::round((height_m - kLowestHeight_m) / kHeightStep_m), 0.0, 255.0));
+  return static_cast<std::uint8_t>(
+      std::clamp(std::round((height_m - kLowestHeight_m) / kShownHeightStep_m), 0.0, 255.0));
 }
 
 /// Reads one cloud into the tiles.

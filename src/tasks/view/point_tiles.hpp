@@ -17,8 +17,8 @@
 namespace cluxel::tasks {
 
 inline constexpr double kViewTile_m = 16, kViewQuantum_m = 0.005;
-/// Heights above the local ground are one byte: kLowestHeight_m + byte * kHeightStep_m, cut at both ends.
-inline constexpr double kLowestHeight_m = -2, kHeightStep_m = 0.125;
+/// Heights above the local ground are one byte: kLowestHeight_m + byte * kShownHeightStep_m, cut at both ends.
+inline constexpr double kLowestHeight_m = -2, kShownHeightStep_m = 0.125;
 inline constexpr std::size_t kViewLevels = 4;
 
 /// One square of the map seen from above. Points of a level are a uniform sample, so that the first levels alone show

@@ -159,7 +159,7 @@ std::string mapValuesJson(const mapping::MapReader& map, const PointTiles& tiles
                 {"quadsLeftOut", quads_left_out},
                 {"quantum", kViewQuantum_m},
                 {"lowestHeight", kLowestHeight_m},
-                {"heightStep", kHeightStep_m},
+                {"heightStep", kShownHeightStep_m},
                 {"intensity", tiles.intensity}};
   if (options.is_served) json["state"] = rdf::commitName(map.transaction());
   if (options.is_served) json["tileState"] = tileStateOf(map);
