@@ -291,7 +291,7 @@ TEST_F(ChangeCommands, GoOnAfterAKill) {
       {"watch " + in("campus") + " -o " + map + " --interval 0.05 --idle 0.5", "a.clx", "whole.clx"}};
   std::mt19937 random(5);
   const int rounds = std::getenv("CLUXEL_LONG_TESTS") != nullptr ? 200 : 1;
-  int killed_runs = 0;
+  std::size_t killed_changes = 0;
   for (const Change& change : changes) {
     const auto prepare = [&] {
       for (const auto& entry : fs::directory_iterator(folder->path()))
@@ -304,7 +304,8 @@ TEST_F(ChangeCommands, GoOnAfterAKill) {
     ASSERT_EQ(run(change.command).code, 0) << change.command;
     const double elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
     ASSERT_TRUE(isDone()) << change.command;
-    for (int i = 0; i < rounds; ++i) {
+    bool was_killed = false;
+    for (int i = 0; i < rounds || (!was_killed && i < rounds + 2); ++i) {
       prepare();
       const double after_s = elapsed_s * (0.1 + 0.9 * static_cast<double>(random() % 1000) / 1000);
       const std::string killed = "timeout -s KILL " + std::to_string(after_s) + " ";
@@ -312,7 +313,7 @@ TEST_F(ChangeCommands, GoOnAfterAKill) {
       ASSERT_NE(status, -1);
       // The program is killed together with `timeout`, or ended before.
       const bool is_killed = WIFSIGNALED(status) || WEXITSTATUS(status) == 128 + SIGKILL;
-      killed_runs += is_killed ? 1 : 0;
+      was_killed = was_killed || is_killed;
       ASSERT_TRUE(is_killed || WEXITSTATUS(status) == 0) << change.command << ": " << status;
       const bool is_built = change.command == changes.front().command && isFinished("copy.clx");
       const Outcome again = run(change.command);
@@ -322,8 +323,9 @@ TEST_F(ChangeCommands, GoOnAfterAKill) {
         EXPECT_TRUE(again.code == 0 || (again.code == 3 && change.command.starts_with("watch"))) << again.err;
       EXPECT_TRUE(isDone()) << change.command << " killed after " << after_s << " of " << elapsed_s << " s";
     }
+    killed_changes += was_killed ? 1 : 0;
   }
-  EXPECT_GT(killed_runs, rounds) << "hardly a run was killed";
+  EXPECT_GE(2 * killed_changes, changes.size()) << "most changes were never killed";
 }
 
 }  // namespace
