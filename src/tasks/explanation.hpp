@@ -31,13 +31,13 @@ std::string explanationGraph(const mapping::MapReader& map, const std::string& n
 /// One of the two: JSON instead of prose with `as_json`.
 std::string explainThing(const mapping::MapReader& map, const std::string& name, bool as_json);
 
-/// Explains an object by its number in MapReader::objects(): one line of JSON as of explainObjects(). Reads what
-/// explainThing() reads.
+/// Explains an object by its number in MapReader::objects(): one line of JSON. Reads what explainThing() reads, and
+/// tells the same.
 std::string explainObject(const mapping::MapReader& map, std::size_t number);
 
 /// Explains every object of the map: one line of JSON for each, in the order of MapReader::objects(), as explainThing()
-/// gives it. Runs the rules twice over the scene, whatever the number of objects. forEachExplanation() needs less
-/// memory.
+/// gives it, but for counterfactuals, which that may tell from a part of the map. Runs the rules twice over the scene,
+/// whatever the number of objects. forEachExplanation() needs less memory.
 std::vector<std::string> explainObjects(const mapping::MapReader& map);
 
 }  // namespace cluxel::tasks
