@@ -61,9 +61,10 @@ struct CluxelTile {
   bool hasVolumes() const { return reach.size() == size(); }
 };
 
-/// "A point joins the earliest seed within the radius, or becomes a seed", in canonical order (cell of radius_m, then
-/// the order of the points), with seeds of the own tile only. Points of neighbouring tiles extend volumes and balls.
-/// Cost: about 200 ns a point.
+/// "A point joins the earliest seed within the radius, or becomes a seed", in canonical order (cell, then the
+/// order of the points), with seeds of the own tile only. Cells are those of gridOf() for the radius: for 0.20 m they
+/// are 0.20002 m wide and 0.2025 m high. Points of neighbouring tiles extend volumes and balls. Cost: about 200 ns a
+/// point.
 CluxelTile clusterTile(const Ring<TilePoints>& ring, const ClusterParams& params);
 
 /// Computes volumes, balls and reaches of `chosen` cluxels (ascending) of the centre tile again, with the same bits.

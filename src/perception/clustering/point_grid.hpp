@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Points of a tile and of a margin around it, sorted by cubic cell, and iteration over each cell's neighbourhood.
+// Points of a tile and of a margin around it, sorted by cell, and iteration over each cell's neighbourhood.
 #pragma once
 
 #include <algorithm>
@@ -24,7 +24,9 @@ struct PointGrid {
   std::size_t cells() const { return cell_start.size() - 1; }
 };
 
-/// Cells of edge `cell_m`. Includes points of neighbouring tiles that are nearer than `margin_m` to the centre tile.
+/// Cells are a little larger than `cell_m`: 1.0001 times as wide, and as high as the next whole fraction of a tile's
+/// width (0.20 m: 0.20002 m wide and 0.2025 m high). Includes points of neighbouring tiles that are nearer than
+/// `margin_m` to the centre tile.
 PointGrid gridOf(const Ring<TilePoints>& ring, double cell_m, double margin_m);
 
 /// The key of the cell that holds a local point: neighbours in z differ by 1, in y by kCellStrideY, in x by
