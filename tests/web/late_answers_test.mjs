@@ -10,7 +10,7 @@ import { pageOfAllTests } from './open_pages.mjs';
 const page_address = `${process.env.CLUXEL_SERVICE.trim()}page`;
 const token = readFileSync(join(process.env.CLUXEL_PAGES, 'token'), 'utf8').trim();
 const open = pageOfAllTests(page_address, { expected: /status of 503/ });
-afterEach(() => open.page.unrouteAll({ behavior: 'ignoreErrors' }));
+afterEach(() => open.page.isClosed() || open.page.unrouteAll({ behavior: 'ignoreErrors' }));  // a page of one test is closed by now
 
 /** Holds the first request to `address` back until `release` is called; then it is answered by `reply`. */
 async function heldBack(page, address, reply) {
