@@ -9,7 +9,7 @@ async function begin(address) {
   await startBrowser();
 }
 
-/** Long tests leave nothing to chance: they open a page for each test. */
+/** Long tests open a page for each test. */
 const isLong = process.env.CLUXEL_LONG_TESTS !== undefined;
 
 const checkFaults = (open, expected) =>
@@ -40,8 +40,8 @@ export function pageOfEachTest(address, { expected = /^$/ } = {}) {
 /**
  * One page for all tests of a file, put back before each: to open one takes seconds of both cores. For tests that look
  * and ask. What the page has read stays read: its engine, places, reasons and changes of visits. A test that damages
- * these, or must see them read for the first time, needs `again()`, whose page is that test's alone. `./run test --long`
- * opens a page for each test, and so shows tests that pass only after others.
+ * these, must see them read for the first time, or hides kinds of places, needs `again()`, whose page is that test's
+ * alone. `./run test --long` opens a page for each test, and so shows tests that pass only after others.
  */
 export function pageOfAllTests(address, { expected = /^$/ } = {}) {
   if (isLong) return pageOfEachTest(address, { expected });
