@@ -21,7 +21,10 @@ const Tile& tileIn(const std::map<perception::TileKey, Tile>& tiles, const perce
 
 CluxelFinder::CluxelFinder(const perception::TileGrid& grid, const TileStages& stages, const perception::TileKey& tile,
                            const perception::ThinParams& thin)
-    : grid_(grid), tile_(tile), cluxels_(tileIn(stages.cluxels(), tile)), kept_(tileIn(stages.points(), tile), thin) {}
+    : grid_(grid),
+      tile_(tile),
+      cluxels_(tileIn(stages.cluxels(), tile)),
+      kept_(tileIn(stages.points(), tile), thin, grid) {}
 
 std::uint32_t CluxelFinder::cluxelOf(const Eigen::Vector3d& p_map) const {
   const std::uint32_t kept = kept_.find(perception::localPoint(grid_, tile_, p_map));

@@ -17,16 +17,18 @@ namespace {
 /// The voxel of a local point as an integer that sorts by x, then y, then z. Wide enough for voxels of 1 cm.
 class VoxelKeys {
  public:
-  explicit VoxelKeys(double voxel_m)
-      : per_m_(1.0 / voxel_m), layers_per_m_(std::round(kTileSize_m / voxel_m) / kTileSize_m) {}
+  /// A whole number of layers is as high as a tile is wide, as in CellKeys; not so in maps of earlier versions.
+  explicit VoxelKeys(double voxel_m, bool whole_layers = true)
+      : per_m_(1.0 / voxel_m),
+        layers_per_m_(whole_layers ? std::round(kTileSize_m / voxel_m) / kTileSize_m : per_m_),
+        height_offset_m_(kMaxHeight_m + (whole_layers ? kTileSize_m : 1.0)) {}
   std::uint64_t operator()(float x, float y, float z) const {
-    return cell(x * per_m_) << 36U | cell(y * per_m_) << 24U | cell((z + kMaxHeight_m + kTileSize_m) * layers_per_m_);
+    return cell(x * per_m_) << 36U | cell(y * per_m_) << 24U | cell((z + height_offset_m_) * layers_per_m_);
   }
 
  private:
   static std::uint64_t cell(double voxels) { return static_cast<std::uint64_t>(std::max(0.0, voxels)); }
-  double per_m_;
-  double layers_per_m_;  ///< a whole number of layers is as high as a tile is wide, as in CellKeys
+  double per_m_, layers_per_m_, height_offset_m_;
 };
 
 /// The concatenated points of all parts, each with its index into the scans.
@@ -263,15 +265,15 @@ void PointsFromScans::fill(const scan::Scan& scan) const {
   }
 }
 
-RepresentativeFinder::RepresentativeFinder(const TilePoints& points, const ThinParams& params)
-    : points_(points), voxel_m_(params.voxel_m), voxel_(points.size()) {
-  const VoxelKeys voxel(voxel_m_);
+RepresentativeFinder::RepresentativeFinder(const TilePoints& points, const ThinParams& params, const TileGrid& grid)
+    : points_(points), voxel_m_(params.voxel_m), whole_layers_(grid.roundsHeights()), voxel_(points.size()) {
+  const VoxelKeys voxel(voxel_m_, whole_layers_);
   for (std::size_t i = 0; i < points.size(); ++i) voxel_[i] = voxel(points.x[i], points.y[i], points.z[i]);
 }
 
 std::uint32_t RepresentativeFinder::find(const Eigen::Vector3f& p_local) const {
-  const auto [begin, end] =
-      std::equal_range(voxel_.begin(), voxel_.end(), VoxelKeys(voxel_m_)(p_local.x(), p_local.y(), p_local.z()));
+  const auto [begin, end] = std::equal_range(voxel_.begin(), voxel_.end(),
+                                             VoxelKeys(voxel_m_, whole_layers_)(p_local.x(), p_local.y(), p_local.z()));
   std::uint32_t nearest = kNone;
   float nearest_squared = 0;
   for (auto at = begin; at != end; ++at) {

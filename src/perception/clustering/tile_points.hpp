@@ -69,7 +69,8 @@ TilePoints thin(const TileKey& key, std::span<const TilePoints* const> parts, co
 /// voxel (ties: the first). Holds no copy of the points; `points` must outlive it.
 class RepresentativeFinder {
  public:
-  RepresentativeFinder(const TilePoints& points, const ThinParams& params);
+  /// `grid`: of the map for which the points were thinned.
+  RepresentativeFinder(const TilePoints& points, const ThinParams& params, const TileGrid& grid = {});
   /// Index into the tile's points; `p_local` as from localPoint(). For a point that is not of the tile's scans, the
   /// nearest kept point of the voxel or, when it has none, kNone. Cost O(log n).
   std::uint32_t find(const Eigen::Vector3f& p_local) const;
@@ -78,6 +79,7 @@ class RepresentativeFinder {
  private:
   const TilePoints& points_;
   double voxel_m_;
+  bool whole_layers_;
   std::vector<std::uint64_t> voxel_;  ///< per point, ascending
 };
 
