@@ -3,15 +3,20 @@
 #include "base/sorting/large_array.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <algorithm>
+#include <csignal>
 #include <cstdint>
-#include <cstdlib>
 #include <fstream>
 #include <numeric>
-#include <optional>
 #include <string>
 #include <vector>
 
+#include "base/file_bytes.hpp"
+#include "base/temporary_folder.hpp"
 #include "cluxel/error.hpp"
 
 namespace cluxel {
@@ -48,9 +53,7 @@ TEST(LargeArray, TakesNoAnonymousMemory) {
 }
 
 TEST(LargeArray, NeedsTheFolderForTemporaryFilesOnlyWhenItIsLarge) {
-  const char* before = std::getenv("TMPDIR");
-  const std::optional<std::string> kept = before == nullptr ? std::nullopt : std::optional<std::string>(before);
-  ::setenv("TMPDIR", "/there/is/none", 1);
+  const TemporaryFolderIs none("/there/is/none");
   EXPECT_NO_THROW(LargeArray<std::uint32_t>(kFew, 0U));
   try {
     const LargeArray<std::uint32_t> array(kMany, 0U);
@@ -58,8 +61,43 @@ TEST(LargeArray, NeedsTheFolderForTemporaryFilesOnlyWhenItIsLarge) {
   } catch (const Error& error) {
     EXPECT_EQ(error.kind(), ErrorKind::StoreUnavailable);
     EXPECT_NE(std::string(error.what()).find("/there/is/none"), std::string::npos);
+    EXPECT_EQ(std::string(error.what()).find("room"), std::string::npos) << "room would not help";
   }
-  kept ? ::setenv("TMPDIR", kept->c_str(), 1) : ::unsetenv("TMPDIR");
+}
+
+/// What a child process that may not write files of more than a megabyte is told by an array of more.
+std::string toldWhereFilesAreLimited(bool is_signal_ignored) {
+  int ends[2];
+  if (::pipe(ends) != 0) return "no pipe";
+  const pid_t child = ::fork();
+  if (child == 0) {
+    if (is_signal_ignored) ::signal(SIGXFSZ, SIG_IGN);
+    const rlimit limit{1'000'000, 1'000'000};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+    std::string told = "nothing";
+    try {
+      const LargeArray<std::uint32_t> array(kMany, 0U);
+    } catch (const Error& error) {
+      told = error.kind() == ErrorKind::StoreUnavailable ? error.what() : "another kind";
+    }
+    const bool is_written = ::write(ends[1], told.data(), told.size()) == static_cast<ssize_t>(told.size());
+    ::_exit(is_written ? 0 : 1);
+  }
+  ::close(ends[1]);
+  std::string told(4096, ' ');
+  told.resize(static_cast<std::size_t>(std::max<ssize_t>(0, ::read(ends[0], told.data(), told.size()))));
+  ::close(ends[0]);
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  return status == 0 ? told : "the process ended otherwise";
+}
+
+TEST(LargeArray, TellsThatNoFileMayBeAsLarge) {
+  const std::string expected = temporaryFolderPath().string() +
+                               ": a temporary file cannot be enlarged (File too large); allow larger files (ulimit "
+                               "-f), or set TMPDIR to a folder that can hold them";
+  EXPECT_EQ(toldWhereFilesAreLimited(true), expected);
+  EXPECT_EQ(toldWhereFilesAreLimited(false), expected) << "the signal would end the process";
 }
 
 }  // namespace

@@ -13,7 +13,8 @@ namespace cluxel {
 inline constexpr std::size_t kMostBytesInMemory = std::size_t{16} << 20U;
 
 /// Memory from a file without a name in the folder for temporary files, with room on the disk for all of it. Throws
-/// Error (StoreUnavailable) when the folder cannot be used or is full. Cost: about 1 us a page that is written.
+/// Error (StoreUnavailable) when the folder cannot be used or is full, and when the process may not write files of this
+/// size; std::bad_alloc when no addresses are left.
 void* mapTemporaryFile(std::size_t bytes);
 void unmapTemporaryFile(void* memory, std::size_t bytes) noexcept;
 

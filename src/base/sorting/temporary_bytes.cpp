@@ -2,6 +2,7 @@
 // pread and pwrite, which may be interrupted and may take a part only.
 #include "base/sorting/temporary_bytes.hpp"
 
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -14,10 +15,25 @@
 
 namespace cluxel {
 
+namespace {
+
+std::string helpFor(int code) {
+  if (code == ENOSPC || code == EDQUOT) return "make room there, or set TMPDIR to a folder with more";
+  if (code == EFBIG) return "allow larger files (ulimit -f), or set TMPDIR to a folder that can hold them";
+  return "set TMPDIR to a folder that can be written";
+}
+
+}  // namespace
+
 void failTemporaryFile(const std::string& what, int code) {
   throw Error(ErrorKind::StoreUnavailable, temporaryFolderPath().string() + ": a temporary file cannot be " + what +
-                                               " (" + std::generic_category().message(code) +
-                                               "); make room there, or set TMPDIR to a folder with more");
+                                               " (" + std::generic_category().message(code) + "); " + helpFor(code));
+}
+
+void requireFileSize(const std::string& what, std::uint64_t bytes) {
+  rlimit limit{};
+  if (::getrlimit(RLIMIT_FSIZE, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY && bytes > limit.rlim_cur)
+    failTemporaryFile(what, EFBIG);
 }
 
 TemporaryBytes::~TemporaryBytes() {
@@ -28,6 +44,7 @@ std::uint64_t TemporaryBytes::append(std::string_view bytes) {
   if (file_ < 0) file_ = openNamelessFile(temporaryFolderPath());
   if (file_ < 0) failTemporaryFile("made", errno);
   const std::uint64_t begin = size_;
+  requireFileSize("written", begin + bytes.size());
   while (!bytes.empty()) {
     const ssize_t count = ::pwrite(file_, bytes.data(), bytes.size(), static_cast<off_t>(size_));
     if (count < 0 && errno == EINTR) continue;

@@ -11,6 +11,8 @@ namespace cluxel {
 
 /// Throws Error (StoreUnavailable): a temporary file cannot be "made", or what else was tried. `code`: as errno.
 [[noreturn]] void failTemporaryFile(const std::string& what, int code);
+/// Throws it when the process may not write files of so many bytes: to do so would send a signal that ends it.
+void requireFileSize(const std::string& what, std::uint64_t bytes);
 
 /// A file without a name in the folder for temporary files, made when the first bytes come. A kill leaves nothing.
 class TemporaryBytes {
