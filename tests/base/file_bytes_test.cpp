@@ -14,6 +14,7 @@
 #include <thread>
 
 #include "base/file_pieces.hpp"
+#include "base/temporary_folder.hpp"
 #include "cluxel/error.hpp"
 
 namespace cluxel {
@@ -198,17 +199,16 @@ TEST_F(FileBytes, LeaveNoPartWhenTheyCannotBeMovedIntoPlace) {
 }
 
 TEST(TemporaryFolderPath, IsToldWhenItIsNone) {
-  const char* before = std::getenv("TMPDIR");
-  const std::string kept = before != nullptr ? before : "";
-  ASSERT_EQ(::setenv("TMPDIR", "/there/is/none", 1), 0);
-  try {
-    temporaryFolderPath();
-    ADD_FAILURE() << "there is no such folder";
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), ErrorKind::StoreUnavailable);
-    EXPECT_NE(std::string(error.what()).find("/there/is/none"), std::string::npos) << error.what();
+  {
+    const TemporaryFolderIs none("/there/is/none");
+    try {
+      temporaryFolderPath();
+      ADD_FAILURE() << "there is no such folder";
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::StoreUnavailable);
+      EXPECT_NE(std::string(error.what()).find("/there/is/none"), std::string::npos) << error.what();
+    }
   }
-  before != nullptr ? ::setenv("TMPDIR", kept.c_str(), 1) : ::unsetenv("TMPDIR");
   EXPECT_TRUE(std::filesystem::is_directory(temporaryFolderPath()));
 }
 

@@ -10,9 +10,11 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <optional>
 #include <random>
 #include <set>
 
+#include "base/temporary_folder.hpp"
 #include "cluxel/error.hpp"
 
 namespace cluxel {
@@ -24,17 +26,16 @@ namespace fs = std::filesystem;
 class SortedInFolder : public testing::Test {
  protected:
   void SetUp() override {
-    if (const char* before = std::getenv("TMPDIR")) before_ = before;
     std::string name = (fs::temp_directory_path() / "cluxel_sorting_XXXXXX").string();
     folder_ = mkdtemp(name.data());
-    ::setenv("TMPDIR", folder_.c_str(), 1);
+    used_.emplace(folder_);
   }
   void TearDown() override {
-    before_.empty() ? ::unsetenv("TMPDIR") : ::setenv("TMPDIR", before_.c_str(), 1);
+    used_.reset();
     fs::remove_all(folder_);
   }
-  std::string before_;
   fs::path folder_;
+  std::optional<TemporaryFolderIs> used_;
 };
 
 std::string randomRecord(std::mt19937& random) {
@@ -102,7 +103,7 @@ TEST_F(SortedInFolder, TellThatTheDiskIsFull) {
 }
 
 TEST_F(SortedInFolder, NeedTheFolderOnlyForWhatDoesNotFitIntoMemory) {
-  ::setenv("TMPDIR", "/there/is/none", 1);
+  const TemporaryFolderIs none("/there/is/none");
   SortedRecords in_memory, in_file(1000);
   EXPECT_EQ(failureOf([&] { addMany(in_memory), in_memory.drain([](std::string_view) {}); }), "no failure");
   EXPECT_NE(failureOf([&] { addMany(in_file); }).find("/there/is/none"), std::string::npos);

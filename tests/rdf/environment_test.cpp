@@ -10,6 +10,7 @@
 #include <thread>
 #include <vector>
 
+#include "base/temporary_folder.hpp"
 #include "rdf/file/commit_stamps.hpp"
 #include "rdf/file/lmdb_environment.hpp"
 #include "rdf/file/lmdb_handles.hpp"
@@ -272,14 +273,13 @@ TEST_F(MapFile, CompactsIntoASmallerMapWithTheSameContents) {
 }
 
 TEST_F(MapFile, ATemporaryOneLeavesNothingBehind) {
-  ::setenv("TMPDIR", folder_.path().c_str(), 1);
   {
+    const TemporaryFolderIs used(folder_.path());
     const auto environment = Environment::temporary();
     put(*environment, "a", "1");
     EXPECT_EQ(environment->read().block("t", "a"), "1");
     EXPECT_TRUE(fs::is_empty(folder_.path()));
   }
-  ::unsetenv("TMPDIR");
   EXPECT_TRUE(fs::is_empty(folder_.path()));
 }
 
