@@ -90,9 +90,10 @@ struct MapSummary {
 ///
 /// Thread-safe: any number of threads may call its functions at once. Each call reads one consistent state, the newest
 /// commit at its begin, also when another thread or process writes. The const functions never wait for one that writes.
-/// summary(), clouds(), points() and explain() wait for each other. All others run in parallel, but tasks and these
-/// four wait for layers of the commit that another call is reading: each layer is read once. What explain()
-/// reads is kept until the map changes; where it has to read the whole map, that is about 1 KB a cluxel. Functions that
+/// summary(), clouds() and explain() wait for each other, and so do calls of points(). All others run in parallel, but
+/// tasks and these four wait for layers of the commit that another call is reading: each layer is read once. What
+/// explain() reads is kept until the map changes: about 1 KB a cluxel of a map that it explains as a whole. Of what
+/// points() reads, 150 MB at most are kept until a call finds another commit, or this object writes. Functions that
 /// write wait for each other.
 ///
 /// Callbacks (ProgressSink and `poll`) may call all const functions, also of the map that is being written: they see
@@ -204,12 +205,13 @@ class CLUXEL_API Map {
 
   /// The scans, sorted by id.
   std::vector<Cloud> clouds() const;
-  /// All points of a scan, in the order in which they were measured. Cost: that of the tiles within its bounds;
-  /// nothing is kept for the next call. Memory: that of a region and the points; 113 MB for a scan of a map of 16.8
-  /// million points (2026-11-30).
+  /// All points of a scan, in the order in which they were measured. Cost: 0.3 us a point, and for the tiles within its
+  /// bounds that no call before has left in memory 0.3 us a point of these and 20 ns a point of all scans in them. A map
+  /// of less than some 2.4 million points is read as a whole by the second call, and each scan then costs its points
+  /// alone. Memory: some 150 MB, and the points.
   PointCloud points(const Cloud& cloud) const;
-  /// The points of an object in all scans, scan by scan. Cost: in the points of its tiles, and of the scans whose
-  /// bounds meet these. Memory: as for a scan; 32 MB for an object of the same map.
+  /// The points of an object in all scans, scan by scan. Cost: 20 ns a point of the scans whose bounds meet its tiles,
+  /// and as for a scan that of its tiles. Memory: as for a scan.
   PointCloud points(const Object& object) const;
   /// The same of an object named as for explain(); a former name means the object that it is now.
   PointCloud points(const std::string& object) const;

@@ -7,8 +7,10 @@
 #include <filesystem>
 #include <memory>
 #include <mutex>
+#include <optional>
 
 #include "mapping/newest_map.hpp"
+#include "mapping/regions/answered_clouds.hpp"
 #include "rdf/file/forks.hpp"
 
 namespace cluxel {
@@ -20,6 +22,8 @@ struct KeptMap {
   std::mutex writing_mutex;                      ///< taken before the other; held while callbacks run
   std::mutex reading_mutex;                      ///< guards `map`; not held while callbacks run
   mapping::NewestMap map;
+  std::mutex points_mutex;  ///< guards `answers`; not held while callbacks run, nor together with reading_mutex
+  std::optional<mapping::KeptAnswers> answers;
 };
 
 /// The KeptMap of the process that asks. A forked child process gets another one: a thread that held a lock, or was

@@ -240,7 +240,8 @@ std::vector<Cloud> Map::clouds() const {
 }
 
 PointCloud Map::points(const Cloud& cloud) const {
-  return impl_->reading([&](const mapping::MapReader& map) { return pointsOf(map, cloud); });
+  return impl_->readingPoints(
+      [&](const mapping::MapReader& map, mapping::KeptAnswers& answers) { return pointsOf(map, answers, cloud); });
 }
 
 PointCloud Map::points(const Object& object) const {
@@ -248,7 +249,8 @@ PointCloud Map::points(const Object& object) const {
 }
 
 PointCloud Map::points(const std::string& object) const {
-  return impl_->reading([&](const mapping::MapReader& map) { return pointsOf(map, object); });
+  return impl_->readingPoints(
+      [&](const mapping::MapReader& map, mapping::KeptAnswers& answers) { return pointsOf(map, answers, object); });
 }
 
 }  // namespace cluxel

@@ -31,6 +31,17 @@ struct Map::Impl {
       return read(reader);
     });
   }
+  /// What `read` gives for the newest state with what is kept of its points. Readers of points wait for each other.
+  template <typename Read>
+  auto readingPoints(const Read& read) {
+    return guarded([&] {
+      KeptMap& mine = kept.get();
+      const std::lock_guard lock(mine.points_mutex);
+      const mapping::MapReader reader(file);
+      if (!mine.answers || !mine.answers->isOf(reader)) mine.answers.emplace(reader);
+      return read(reader, *mine.answers);
+    });
+  }
   rdf::QuadReader newestQuads() const {
     return guarded([&] { return kept.get().map.quads(); });
   }
@@ -54,8 +65,12 @@ struct Map::Impl {
   }
   void forget() {
     KeptMap& mine = kept.get();
-    const std::lock_guard lock(mine.reading_mutex);
-    mine.map.release();
+    {
+      const std::lock_guard lock(mine.reading_mutex);
+      mine.map.release();
+    }
+    const std::lock_guard lock(mine.points_mutex);
+    mine.answers.reset();
   }
 
   const std::filesystem::path file;

@@ -2,11 +2,11 @@
 // Points of scans and objects in the map frame.
 #include "api/point_query.hpp"
 
+#include <algorithm>
 #include <utility>
 #include <vector>
 
 #include "cluxel/error.hpp"
-#include "mapping/regions/answered_clouds.hpp"
 #include "rdf/map_iris.hpp"
 #include "scan/truth/primitive_label.hpp"
 #include "tasks/thing_names.hpp"
@@ -67,24 +67,23 @@ std::vector<Cloud> cloudsOf(const mapping::MapReader& map) {
   return clouds;
 }
 
-PointCloud pointsOf(const mapping::MapReader& map, const Cloud& cloud) {
-  std::vector<mapping::Cloud> wanted = map.clouds();
-  std::erase_if(wanted, [&](const mapping::Cloud& stored) { return stored.id.hex() != cloud.id; });
-  if (wanted.empty()) throw Error(ErrorKind::NotFound, "the map has no scan '" + cloud.id + "' (any more)");
+PointCloud pointsOf(const mapping::MapReader& map, mapping::KeptAnswers& kept, const Cloud& cloud) {
+  const std::vector<mapping::Cloud> clouds = map.clouds();
+  const auto stored =
+      std::find_if(clouds.begin(), clouds.end(), [&](const mapping::Cloud& one) { return one.id.hex() == cloud.id; });
+  if (stored == clouds.end()) throw Error(ErrorKind::NotFound, "the map has no scan '" + cloud.id + "' (any more)");
+  const scan::ScanPoints measured = map.pointsOf(stored->id);
+  const mapping::PointAnswers answers = kept.answersFor(map, *stored, measured);
   PointCloud points;
-  mapping::forEachAnsweredCloud(
-      map, std::move(wanted),
-      [&](const mapping::Cloud& stored, const scan::ScanPoints& measured, const mapping::PointAnswers& answers) {
-        for (std::size_t i = 0; i < measured.size(); ++i)
-          append(stored, measured, i, answers.label[i], answers.object[i], points);
-      });
+  for (std::size_t i = 0; i < measured.size(); ++i)
+    append(*stored, measured, i, answers.label[i], answers.object[i], points);
   return withWholeIntensity(std::move(points));
 }
 
-PointCloud pointsOf(const mapping::MapReader& map, const std::string& object) {
+PointCloud pointsOf(const mapping::MapReader& map, mapping::KeptAnswers& kept, const std::string& object) {
   const auto number = static_cast<std::uint32_t>(tasks::objectNamed(map, object));
   PointCloud points;
-  mapping::forEachCloudOfObject(
+  kept.forEachCloud(
       map, number,
       [&](const mapping::Cloud& stored, const scan::ScanPoints& measured, const mapping::LabelledPoints& labelled) {
         for (const auto& [i, label] : labelled) append(stored, measured, i, label, number, points);

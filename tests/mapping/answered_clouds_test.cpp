@@ -5,9 +5,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <map>
+#include <random>
+#include <stdexcept>
 
+#include "base/temporary_folder.hpp"
 #include "cluxel/error.hpp"
 #include "mapping/street_map.hpp"
 
@@ -76,15 +78,20 @@ TEST_F(AnsweredCloudsTest, AnswerForOneOfThemAsForAll) {
     }
 }
 
-TEST_F(AnsweredCloudsTest, HaveThePointsOfEachObjectWhateverTheRegions) {
-  const std::vector<Cloud> clouds = map->clouds();
-  std::map<std::uint32_t, std::map<ContentHash, LabelledPoints>> expected;  // by object and cloud
-  for (const Cloud& cloud : clouds) {
-    const PointAnswers answers = map->answersFor(cloud);
+using PointsByObject = std::map<std::uint32_t, std::map<ContentHash, LabelledPoints>>;  // and by cloud
+
+PointsByObject pointsByObject(const MapReader& map) {
+  PointsByObject points;
+  for (const Cloud& cloud : map.clouds()) {
+    const PointAnswers answers = map.answersFor(cloud);
     for (std::uint32_t i = 0; i < answers.object.size(); ++i)
-      if (answers.object[i] != kNoObjectOfPoint)
-        expected[answers.object[i]][cloud.id].emplace_back(i, answers.label[i]);
+      if (answers.object[i] != kNoObjectOfPoint) points[answers.object[i]][cloud.id].emplace_back(i, answers.label[i]);
   }
+  return points;
+}
+
+TEST_F(AnsweredCloudsTest, HaveThePointsOfEachObjectWhateverTheRegions) {
+  const PointsByObject expected = pointsByObject(*map);
   std::size_t in_several_clouds = 0;
   for (std::uint32_t object = 0; object < map->objectIds().size(); ++object)
     for (const std::size_t max_cluxels : {std::size_t{1}, std::size_t{1500}, kAnsweredCluxels}) {
@@ -94,27 +101,55 @@ TEST_F(AnsweredCloudsTest, HaveThePointsOfEachObjectWhateverTheRegions) {
           [&](const Cloud& cloud, const scan::ScanPoints& points, const LabelledPoints& labelled) {
             visited.push_back(cloud.id);
             EXPECT_EQ(points.x, map->pointsOf(cloud.id).x);
-            EXPECT_EQ(labelled, expected[object][cloud.id]) << object << " " << max_cluxels;
+            EXPECT_EQ(labelled, expected.at(object).at(cloud.id)) << object << " " << max_cluxels;
           },
           max_cluxels);
-      EXPECT_EQ(visited.size(), expected[object].size());
+      EXPECT_EQ(visited.size(), expected.at(object).size());
       EXPECT_TRUE(std::is_sorted(visited.begin(), visited.end())) << "clouds are sorted by id";
       in_several_clouds += visited.size() > 1 ? 1 : 0;
     }
   EXPECT_GT(in_several_clouds, 0);
 }
 
+TEST_F(AnsweredCloudsTest, AreTheSameFromWhatIsKeptWhateverWasAskedBefore) {
+  const PointsByObject expected = pointsByObject(*map);
+  const std::vector<Cloud> clouds = map->clouds();
+  std::mt19937 random(5);
+  for (const std::size_t max_cluxels : {std::size_t{1}, std::size_t{600}, std::size_t{2500}, kAnsweredCluxels}) {
+    KeptAnswers kept(*map, max_cluxels);
+    EXPECT_TRUE(kept.isOf(*map));
+    for (int call = 0; call < 25; ++call) {
+      const Cloud& cloud = clouds[random() % clouds.size()];
+      const PointAnswers answers = kept.answersFor(*map, cloud, map->pointsOf(cloud.id)), all = map->answersFor(cloud);
+      EXPECT_EQ(answers.cluxel, all.cluxel) << max_cluxels;
+      EXPECT_EQ(answers.label, all.label) << max_cluxels;
+      EXPECT_EQ(answers.object, all.object) << max_cluxels;
+      const auto object = static_cast<std::uint32_t>(random() % map->objectIds().size());
+      std::map<ContentHash, LabelledPoints> visited;
+      kept.forEachCloud(*map, object, [&](const Cloud& visited_cloud, const auto&, const LabelledPoints& labelled) {
+        visited.emplace(visited_cloud.id, labelled);
+      });
+      EXPECT_EQ(visited, expected.at(object)) << object << " " << max_cluxels;
+    }
+  }
+}
+
+TEST_F(AnsweredCloudsTest, GoOnFromWhatIsKeptAfterACallerThrew) {
+  KeptAnswers kept(*map);
+  const auto fail = [](const Cloud&, const auto&, const auto&) { throw std::runtime_error("enough"); };
+  EXPECT_THROW(kept.forEachCloud(*map, 0, fail), std::runtime_error);
+  const Cloud cloud = map->clouds().front();
+  EXPECT_EQ(kept.answersFor(*map, cloud, map->pointsOf(cloud.id)).object, map->answersFor(cloud).object);
+}
+
 TEST_F(AnsweredCloudsTest, NeedTheFolderForTemporaryFilesOnlyForSeveralRegions) {
   const auto ignore = [](const Cloud&, const scan::ScanPoints&, const PointAnswers&) {};
-  const char* before = std::getenv("TMPDIR");
-  const std::optional<std::string> kept = before == nullptr ? std::nullopt : std::optional<std::string>(before);
-  ::setenv("TMPDIR", "/there/is/none", 1);
+  const TemporaryFolderIs none("/there/is/none");
   EXPECT_NO_THROW(forEachAnsweredCloud(*map, ignore));
   EXPECT_THROW(forEachAnsweredCloud(*map, ignore, 1), Error);
   const auto ignoreObject = [](const Cloud&, const scan::ScanPoints&, const LabelledPoints&) {};
   for (std::uint32_t object = 0; object < map->objectIds().size(); ++object)
     EXPECT_NO_THROW(forEachCloudOfObject(*map, object, ignoreObject));
-  kept ? ::setenv("TMPDIR", kept->c_str(), 1) : ::unsetenv("TMPDIR");
 }
 
 }  // namespace

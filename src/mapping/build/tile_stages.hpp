@@ -89,6 +89,10 @@ class TileStages {
   void loadPoints(const rdf::ReadTransaction& transaction, const perception::TileSet& tiles);
   /// Gives the memory of points and cluxels back.
   void dropPoints();
+  /// The same of these tiles.
+  void dropPoints(const perception::TileSet& tiles) {
+    for (const perception::TileKey& tile : tiles) outputs_.points.erase(tile), outputs_.cluxels.erase(tile);
+  }
   /// The same for all outputs; they are read again when they are needed.
   void dropAll() {
     outputs_ = {};

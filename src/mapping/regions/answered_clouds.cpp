@@ -5,18 +5,19 @@
 
 #include <algorithm>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
-#include <unordered_map>
 #include <utility>
 
 #include "base/free_memory.hpp"
-#include "base/sorting/temporary_bytes.hpp"
 #include "mapping/build/cluxel_finder.hpp"
 #include "mapping/build/tile_stages.hpp"
 #include "mapping/damaged_map.hpp"
 #include "mapping/layers/stored_layers.hpp"
 #include "mapping/map_tables.hpp"
+#include "mapping/regions/answer_pieces.hpp"
+#include "mapping/regions/recent_tiles.hpp"
 #include "mapping/regions/tile_objects.hpp"
 #include "mapping/regions/tile_regions.hpp"
 #include "mapping/stored_grid.hpp"
@@ -29,22 +30,6 @@ namespace {
 using perception::TileKey;
 using perception::TileSet;
 
-/// Answers for some points of a cloud. The arrays are parallel.
-struct AnswerPiece {
-  std::vector<std::uint32_t> point;  ///< number in the cloud, ascending
-  PointAnswers answers;
-
-  void add(std::size_t number, std::uint32_t cluxel, std::uint8_t label, std::uint32_t object) {
-    point.push_back(static_cast<std::uint32_t>(number));
-    answers.cluxel.push_back(cluxel);
-    answers.label.push_back(label);
-    answers.object.push_back(object);
-  }
-  void addTo(LabelledPoints& labelled) const {
-    for (std::size_t i = 0; i < point.size(); ++i) labelled.emplace_back(point[i], answers.label[i]);
-  }
-};
-
 /// What the map says about the cluxels of one tile.
 struct AnsweringTile {
   CluxelFinder finder;
@@ -53,25 +38,44 @@ struct AnsweringTile {
   std::uint32_t first_cluxel;         ///< in MapReader::scene()
 };
 
+CluxelRanges cluxelRangesOf(const MapReader& map) {
+  CluxelRanges ranges;
+  std::uint32_t first = 0;
+  for (const TileKey& tile : storedTiles(map.transaction())) {
+    const std::size_t count = perception::cluxelsIn(requiredBlock(map.transaction(), tables::kSummaries, tile));
+    ranges.emplace(tile, CluxelRange{first, count});
+    first += static_cast<std::uint32_t>(count);
+  }
+  return ranges;
+}
+
 class RegionAnswers {
  public:
-  RegionAnswers(const MapReader& map, TileStages& stages, const TileSet& tiles,
-                const std::map<TileKey, std::uint32_t>& first_cluxel)
-      : grid_(storedGrid(map.transaction())) {
-    stages.dropPoints();
+  RegionAnswers(const perception::TileGrid& grid, const perception::ThinParams& thin) : grid_(grid), thin_(thin) {}
+
+  /// Reads tiles that are not there. Their points stay in `stages`, for as long as the tiles are here.
+  void add(const MapReader& map, TileStages& stages, const TileSet& tiles, const CluxelRanges& ranges) {
     stages.loadPoints(map.transaction(), tiles);
     for (const TileKey& tile : tiles) {
       const std::string_view labels = requiredBlock(map.transaction(), tables::kLabels, tile);
-      AnsweringTile answering{{grid_, stages, tile, map.model().perception.thin},
+      AnsweringTile answering{{grid_, stages, tile, thin_},
                               ofTile(tile, perception::labelTileFromBytes(labels)),
                               objectsInTile(map, tile),
-                              first_cluxel.at(tile)};
+                              ranges.at(tile).first};
       const std::size_t count = stages.cluxels().at(tile).size();
       if (answering.labels.label.size() != count || answering.object.size() != count)
         refuseDamaged("a stored tile does not fit its cluxels");
       tiles_.emplace(tile, std::move(answering));
     }
   }
+  /// Moves tiles to the answers that are returned.
+  RegionAnswers take(const TileSet& tiles) {
+    RegionAnswers taken(grid_, thin_);
+    for (const TileKey& tile : tiles) taken.tiles_.insert(tiles_.extract(tile));
+    return taken;
+  }
+  void giveBack(RegionAnswers taken) { tiles_.merge(taken.tiles_); }
+  void clear() { tiles_.clear(); }
 
   /// `only`: absent, or the number of the object whose points are wanted.
   AnswerPiece answersFor(const Cloud& cloud, const scan::ScanPoints& points,
@@ -93,79 +97,21 @@ class RegionAnswers {
 
  private:
   perception::TileGrid grid_;
+  perception::ThinParams thin_;
   std::map<TileKey, AnsweringTile> tiles_;
 };
 
-/// Keeps the pieces of all clouds in a file.
-class AnswerPieces {
- public:
-  void add(const Cloud& cloud, const AnswerPiece& piece) {
-    if (piece.point.empty()) return;
-    const PointAnswers& answers = piece.answers;
-    std::string bytes;
-    append(bytes, piece.point), append(bytes, answers.cluxel), append(bytes, answers.object);
-    append(bytes, answers.label);
-    places_[cloud.id].push_back({file_.append(bytes), piece.point.size()});
+void visitObjectIn(const TileSet& tiles, const RegionAnswers& answers, const MapReader& map,
+                   const std::vector<Cloud>& clouds, std::uint32_t object, const ObjectPointsVisit& visit) {
+  const perception::TileGrid grid = storedGrid(map.transaction());
+  for (const Cloud& cloud : clouds) {
+    if (tilesInBounds(cloud, tiles, grid).empty()) continue;
+    const scan::ScanPoints points = map.pointsOf(cloud.id);
+    LabelledPoints labelled;
+    answers.answersFor(cloud, points, object).addTo(labelled);
+    if (!labelled.empty()) visit(cloud, points, labelled);
   }
-
-  /// The pieces must have all points of the cloud, each once.
-  PointAnswers join(const Cloud& cloud, std::size_t count) const {
-    PointAnswers all{std::vector<std::uint32_t>(count), std::vector<std::uint8_t>(count),
-                     std::vector<std::uint32_t>(count)};
-    std::size_t joined = 0;
-    forEachPiece(cloud, [&](const AnswerPiece& piece) {
-      for (std::size_t i = 0; i < piece.point.size(); ++i) {
-        all.cluxel.at(piece.point[i]) = piece.answers.cluxel[i];
-        all.label[piece.point[i]] = piece.answers.label[i];
-        all.object[piece.point[i]] = piece.answers.object[i];
-      }
-      joined += piece.point.size();
-    });
-    if (joined != count) refuseDamaged(cloud.source + ": has points in tiles that are not there");
-    return all;
-  }
-
-  /// The points of the pieces, ascending, with their labels.
-  LabelledPoints labelled(const Cloud& cloud) const {
-    LabelledPoints all;
-    forEachPiece(cloud, [&](const AnswerPiece& piece) { piece.addTo(all); });
-    std::sort(all.begin(), all.end());
-    return all;
-  }
-
- private:
-  struct Place {
-    std::uint64_t begin = 0;
-    std::size_t count = 0;
-  };
-
-  template <typename T>
-  static void append(std::string& bytes, const std::vector<T>& values) {
-    bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
-  }
-
-  template <typename Visit>
-  void forEachPiece(const Cloud& cloud, const Visit& visit) const {
-    if (const auto places = places_.find(cloud.id); places != places_.end())
-      for (const Place& place : places->second) visit(read(place));
-  }
-
-  AnswerPiece read(const Place& place) const {
-    AnswerPiece piece;
-    std::uint64_t at = place.begin;
-    const auto take = [&](auto& values) {
-      values.resize(place.count);
-      const std::size_t bytes = values.size() * sizeof(values[0]);
-      file_.read(at, reinterpret_cast<char*>(values.data()), bytes);
-      at += bytes;
-    };
-    take(piece.point), take(piece.answers.cluxel), take(piece.answers.object), take(piece.answers.label);
-    return piece;
-  }
-
-  TemporaryBytes file_;
-  std::unordered_map<scan::ScanId, std::vector<Place>> places_;
-};
+}
 
 /// Clouds and the tiles in which their points are answered for, cut into regions.
 class AnsweredClouds {
@@ -175,15 +121,11 @@ class AnsweredClouds {
         clouds_(std::move(clouds)),
         grid_(storedGrid(map.transaction())),
         inputs_(map.inputs()),
-        stages_(map.model(), inputs_.params) {
+        stages_(map.model(), inputs_.params),
+        ranges_(cluxelRangesOf(map)) {
     std::vector<CountedTile> tiles;
-    std::uint32_t first = 0;
-    for (const TileKey& tile : storedTiles(map.transaction())) {
-      const std::size_t count = perception::cluxelsIn(requiredBlock(map.transaction(), tables::kSummaries, tile));
-      first_cluxel_.emplace(tile, first);
-      first += static_cast<std::uint32_t>(count);
-      if (wanted.contains(tile)) tiles.push_back({tile, count});
-    }
+    for (const auto& [tile, range] : ranges_)
+      if (wanted.contains(tile)) tiles.push_back({tile, range.count});
     regions_ = regionsOf(std::move(tiles), max_cluxels);
   }
 
@@ -207,10 +149,17 @@ class AnsweredClouds {
  private:
   bool meets(const Cloud& cloud, const TileSet& region) const { return !tilesInBounds(cloud, region, grid_).empty(); }
 
+  RegionAnswers answersIn(const TileSet& region) {
+    stages_.dropPoints();
+    RegionAnswers answers(grid_, map_.model().perception.thin);
+    answers.add(map_, stages_, region, ranges_);
+    return answers;
+  }
+
   /// `only`: as RegionAnswers::answersFor() has it.
   void collect(std::optional<std::uint32_t> only) {
     for (const TileSet& region : regions_) {
-      const RegionAnswers answers(map_, stages_, region, first_cluxel_);
+      const RegionAnswers answers = answersIn(region);
       for (const Cloud& cloud : clouds_)
         if (meets(cloud, region)) pieces_.add(cloud, answers.answersFor(cloud, map_.pointsOf(cloud.id), only));
     }
@@ -219,22 +168,15 @@ class AnsweredClouds {
   }
 
   void visitObjectInOneRegion(std::uint32_t object, const ObjectPointsVisit& visit) {
-    const RegionAnswers answers(map_, stages_, regions_.front(), first_cluxel_);
-    for (const Cloud& cloud : clouds_) {
-      if (!meets(cloud, regions_.front())) continue;
-      const scan::ScanPoints points = map_.pointsOf(cloud.id);
-      LabelledPoints labelled;
-      answers.answersFor(cloud, points, object).addTo(labelled);
-      if (!labelled.empty()) visit(cloud, points, labelled);
-    }
+    visitObjectIn(regions_.front(), answersIn(regions_.front()), map_, clouds_, object, visit);
   }
 
   void visitOneRegion(const AnsweredVisit& visit) {
-    const RegionAnswers answers(map_, stages_, regions_.front(), first_cluxel_);
+    const RegionAnswers answers = answersIn(regions_.front());
     for (const Cloud& cloud : clouds_) {
       const scan::ScanPoints points = map_.pointsOf(cloud.id);
       const AnswerPiece piece = answers.answersFor(cloud, points);
-      if (piece.point.size() != points.size()) refuseDamaged(cloud.source + ": has points in tiles that are not there");
+      if (piece.point.size() != points.size()) refuseOutside(cloud);
       visit(cloud, points, piece.answers);
     }
   }
@@ -244,7 +186,7 @@ class AnsweredClouds {
   perception::TileGrid grid_;
   MapInputs inputs_;
   TileStages stages_;
-  std::map<TileKey, std::uint32_t> first_cluxel_;
+  CluxelRanges ranges_;
   std::vector<TileSet> regions_;
   AnswerPieces pieces_;
 };
@@ -256,6 +198,12 @@ TileSet tilesUnder(const MapReader& map, const std::vector<Cloud>& clouds) {
   TileSet tiles;
   for (const Cloud& cloud : clouds) tiles.merge(tilesInBounds(cloud, all, grid));
   return tiles;
+}
+
+TileSet tilesOfObject(const MapReader& map, std::uint32_t object) {
+  const std::optional<ObjectRecord> record = storedRecord(map.transaction(), map.objectIds().at(object));
+  if (!record) refuseDamaged("an object is not there");
+  return {record->tiles.begin(), record->tiles.end()};
 }
 
 }  // namespace
@@ -272,10 +220,97 @@ void forEachAnsweredCloud(const MapReader& map, std::vector<Cloud> clouds, const
 
 void forEachCloudOfObject(const MapReader& map, std::uint32_t object, const ObjectPointsVisit& visit,
                           std::size_t max_cluxels) {
-  const std::optional<ObjectRecord> record = storedRecord(map.transaction(), map.objectIds().at(object));
-  if (!record) refuseDamaged("an object is not there");
-  const TileSet tiles(record->tiles.begin(), record->tiles.end());
-  AnsweredClouds(map, map.clouds(), tiles, max_cluxels).visitObject(object, visit);
+  AnsweredClouds(map, map.clouds(), tilesOfObject(map, object), max_cluxels).visitObject(object, visit);
+}
+
+class KeptAnswers::Impl {
+ public:
+  Impl(const MapReader& map, std::size_t max_cluxels)
+      : max_cluxels_(max_cluxels),
+        commit_(commitOf(map)),
+        model_(map.model()),
+        stages_(model_, map.inputs().params),
+        recent_(cluxelRangesOf(map), max_cluxels),
+        answers_(storedGrid(map.transaction()), model_.perception.thin) {}
+
+  bool isOf(const MapReader& map) const { return map.quads().kept(kCommit) == commit_; }
+
+  PointAnswers answersFor(const MapReader& map, const Cloud& cloud, const scan::ScanPoints& points) {
+    PointAnswers found;
+    if (hold(map, tilesUnder(map, {cloud}))) {
+      AnswerPiece piece = answers_.answersFor(cloud, points);
+      if (piece.point.size() != points.size()) refuseOutside(cloud);
+      found = std::move(piece.answers);
+    } else {
+      clear();  // a region takes as much again
+      const auto take = [&](const auto&, const auto&, const PointAnswers& answers) { found = answers; };
+      forEachAnsweredCloud(map, {cloud}, take, max_cluxels_);
+    }
+    return found;
+  }
+
+  void forEachCloud(const MapReader& map, std::uint32_t object, const ObjectPointsVisit& visit) {
+    const TileSet tiles = tilesOfObject(map, object);
+    if (!hold(map, tiles)) return clear(), forEachCloudOfObject(map, object, visit, max_cluxels_);
+    RegionAnswers own = answers_.take(tiles);  // points in other tiles need not be found
+    try {
+      visitObjectIn(tiles, own, map, map.clouds(), object, visit);
+    } catch (...) {
+      clear();
+      throw;
+    }
+    answers_.giveBack(std::move(own));
+  }
+
+ private:
+  static constexpr const char* kCommit = "kept answers";
+
+  /// What the readers of a commit share, as long as somebody has it.
+  static std::shared_ptr<const void> commitOf(const MapReader& map) {
+    if (!map.quads().kept(kCommit)) map.quads().keep(kCommit, std::make_shared<int>());
+    return map.quads().kept(kCommit);
+  }
+
+  /// Reads the tiles that are missing. False when these are too many to be kept.
+  bool hold(const MapReader& map, const TileSet& tiles) {
+    const auto change = recent_.use(tiles);
+    if (!change) return false;
+    answers_.take(change->dropped);
+    stages_.dropPoints(change->dropped);
+    try {
+      if (!change->read.empty()) answers_.add(map, stages_, change->read, recent_.ranges());
+    } catch (...) {
+      clear();
+      throw;
+    }
+    return true;
+  }
+
+  void clear() {
+    recent_.clear(), answers_.clear();
+    stages_.dropAll();
+  }
+
+  std::size_t max_cluxels_;
+  std::shared_ptr<const void> commit_;
+  perception::LabelModel model_;
+  TileStages stages_;
+  RecentTiles recent_;
+  RegionAnswers answers_;
+};
+
+KeptAnswers::KeptAnswers(const MapReader& map, std::size_t max_cluxels)
+    : impl_(std::make_unique<Impl>(map, max_cluxels)) {}
+KeptAnswers::~KeptAnswers() = default;
+
+bool KeptAnswers::isOf(const MapReader& map) const {
+  return impl_->isOf(map);
+}
+PointAnswers KeptAnswers::answersFor(const MapReader& map, const Cloud& cloud, const scan::ScanPoints& points) {
+  return impl_->answersFor(map, cloud, points);
+}
+void KeptAnswers::forEachCloud(const MapReader& map, std::uint32_t object, const ObjectPointsVisit& visit) {
+  impl_->forEachCloud(map, object, visit);
 }
 
 }  // namespace cluxel::mapping
