@@ -97,13 +97,6 @@ class CloudReader {
   ViewTileKey key_;
 };
 
-ViewTileMap pointsOf(const mapping::MapReader& map, const std::vector<mapping::CluxelHeight>& heights,
-                     const mapping::Cloud& cloud, std::size_t number) {
-  ViewTileMap tiles;
-  CloudReader(heights, 1.0, tiles).read(cloud, number, map.pointsOf(cloud.id), map.answersFor(cloud));
-  return tiles;
-}
-
 /// The values between which 98 of 100 intensities lie: single bright returns would leave everything else dark.
 std::array<double, 2> intensityRange(const ViewTileMap& tiles) {
   std::vector<float> sample;
@@ -230,10 +223,26 @@ struct PointTileSource::Kept {
   std::uint64_t points = 0;
   std::once_flag has_heights;
   std::vector<mapping::CluxelHeight> heights;
+  std::mutex answers_mutex;
+  std::optional<mapping::KeptAnswers> answers;
 
   const std::vector<mapping::CluxelHeight>& heightsIn(const mapping::MapReader& map) {
     std::call_once(has_heights, [&] { heights = mapping::heightsOfCluxels(map); });
     return heights;
+  }
+
+  mapping::PointAnswers answersIn(const mapping::MapReader& map, const mapping::Cloud& cloud,
+                                  const scan::ScanPoints& points_of_cloud) {
+    const std::lock_guard lock(answers_mutex);
+    if (!answers || !answers->isOf(map)) answers.emplace(map);
+    return answers->answersFor(map, cloud, points_of_cloud);
+  }
+
+  ViewTileMap tilesOf(const mapping::MapReader& map, const mapping::Cloud& cloud, std::size_t number) {
+    const scan::ScanPoints of_cloud = map.pointsOf(cloud.id);
+    ViewTileMap tiles;
+    CloudReader(heightsIn(map), 1.0, tiles).read(cloud, number, of_cloud, answersIn(map, cloud, of_cloud));
+    return tiles;
   }
 };
 
@@ -266,7 +275,7 @@ std::optional<PointTile> PointTileSource::tile(const mapping::MapReader& map, co
       continue;
     const std::shared_ptr<CloudPoints> cloud_points = placeOf(i);
     const std::lock_guard lock(cloud_points->mutex);
-    if (!cloud_points->tiles) cloud_points->tiles = pointsOf(map, kept_->heightsIn(map), cloud, i);
+    if (!cloud_points->tiles) cloud_points->tiles = kept_->tilesOf(map, cloud, i);
     const ViewTileMap& of_cloud = *cloud_points->tiles;
     if (const auto found = of_cloud.find(key); found != of_cloud.end())
       points.insert(points.end(), found->second.begin(), found->second.end());

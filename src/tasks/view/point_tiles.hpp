@@ -49,8 +49,9 @@ std::vector<mapping::Cloud> cloudsByTime(const mapping::MapReader& map);
 std::string tileStateOf(const mapping::MapReader& map);
 
 /// All points of single tiles. Keeps the points of some clouds, since neighbouring tiles are wanted one after the
-/// other. For one state of a map. Thread-safe: callers wait for each other only when they want a cloud that one of them
-/// is reading.
+/// other, and the map's tiles of the last ones: some 250 MB at most, and 8 bytes a cluxel. For one state of a map.
+/// Thread-safe: callers wait for each other when they want a cloud that one of them is reading, and while one finds the
+/// objects of a cloud's points.
 class PointTileSource {
  public:
   explicit PointTileSource(const mapping::MapReader& map);
