@@ -95,7 +95,7 @@ CheapestWays cheapestWays(const PassableGrid& grid, std::uint32_t start, const S
     for (std::size_t i = 0; i < steps.count; ++i) {
       const auto& [to, step_cost] = steps.step[i];
       const double before = ways.cost[to], now = ways.cost[from] + step_cost;
-      if (now >= before) continue;  // so it is for cells that left the queue, too: no step has a negative cost
+      if (!(now < before)) continue;  // so it is for cells that left the queue, too: no step has a negative cost
       ways.cost[to] = now;
       ways.before[to] = from;
       std::isinf(before) ? queue.push(to) : queue.update(to);
