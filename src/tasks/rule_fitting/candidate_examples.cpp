@@ -7,8 +7,12 @@
 #include <utility>
 
 #include "mapping/clouds/scan_store.hpp"
+#include "mapping/damaged_map.hpp"
 #include "mapping/facts/ask_replay.hpp"
+#include "mapping/layers/stored_layers.hpp"
+#include "mapping/map_tables.hpp"
 #include "mapping/regions/answered_clouds.hpp"
+#include "perception/segments/summary_tile.hpp"
 #include "rules/decide/decision_record.hpp"
 #include "rules/decide/reason.hpp"
 
@@ -18,11 +22,19 @@ namespace {
 
 using Votes = std::map<std::size_t, double>;  ///< points by class number
 
+std::size_t cluxelCountOf(const mapping::MapReader& map) {
+  std::size_t count = 0;
+  for (const perception::TileKey& tile : mapping::storedTiles(map.transaction()))
+    count += perception::cluxelsIn(mapping::requiredBlock(map.transaction(), mapping::tables::kSummaries, tile));
+  return count;
+}
+
 /// The truth of the points of each cluxel. Nearly all cluxels have points of one class only, so what a map of votes for
 /// each would take is spared.
 class CluxelTruth {
  public:
-  CluxelTruth(const mapping::MapReader& map, const TruthSource& truth) {
+  CluxelTruth(const mapping::MapReader& map, const TruthSource& truth)
+      : points_(cluxelCountOf(map)), first_count_(points_.size()), first_class_(points_.size(), -1) {
     mapping::forEachAnsweredCloud(
         map, [&](const mapping::Cloud& cloud, const scan::ScanPoints& points, const mapping::PointAnswers& answers) {
           const scan::PointTruth of_points = truth.truthOf(scanOf(cloud, points));
@@ -31,23 +43,17 @@ class CluxelTruth {
   }
 
   /// All points, with truth or without.
-  double pointsOf(std::uint32_t cluxel) const { return cluxel < points_.size() ? points_[cluxel] : 0; }
+  double pointsOf(std::uint32_t cluxel) const { return points_.at(cluxel); }
 
   void addVotes(std::uint32_t cluxel, Votes& votes) const {
-    if (cluxel >= points_.size()) return;
-    if (first_count_[cluxel] > 0) votes[static_cast<std::size_t>(first_class_[cluxel])] += first_count_[cluxel];
+    if (first_count_.at(cluxel) > 0) votes[static_cast<std::size_t>(first_class_[cluxel])] += first_count_[cluxel];
     for (auto other = others_.lower_bound({cluxel, 0}); other != others_.end() && other->first.first == cluxel; ++other)
       votes[static_cast<std::size_t>(other->first.second)] += other->second;
   }
 
  private:
   void add(std::uint32_t cluxel, std::int8_t object_class) {
-    if (cluxel >= points_.size()) {
-      points_.resize(cluxel + 1, 0);
-      first_count_.resize(cluxel + 1, 0);
-      first_class_.resize(cluxel + 1, -1);
-    }
-    ++points_[cluxel];
+    ++points_.at(cluxel);
     if (object_class < 0) return;
     if (first_class_[cluxel] < 0) first_class_[cluxel] = object_class;
     if (first_class_[cluxel] == object_class)
