@@ -3,7 +3,8 @@
 # Reads a map in all ways, each in a process of its own, and prints a table of processor time and memory (RssAnon).
 # Usage: bench/memory.sh CLUXEL OUT MAP [TRUTH [FROM TO]]: a folder for what is written, the truth for `evaluate`
 # (campus), and the ends of a route as `route` takes them. MAP is only read. SINCE: from when on scans are later, for
-# `changes`. ONLY: names of rows to measure, separated by spaces. Operations that find nothing (exit codes 1 and 3) count.
+# `changes`. RULES: other rules, for `rules try`. ONLY: names of rows to measure, separated by spaces. Operations that
+# find nothing (exit codes 1 and 3) count.
 set -euo pipefail
 [ $# -ge 3 ] || { sed -n '4s/^# //p' "$0" >&2; exit 2; }
 cluxel=$1 out=$2 map=$3 truth=${4:-campus} from=${5:-} to=${6:-} here=$(dirname "$0")
@@ -34,5 +35,9 @@ measure inventory inventory "$map"
 measure changes changes "$map" ${SINCE:+--since "$SINCE"}
 measure search search "$map" --for Vehicle
 [ -z "$from" ] || measure route route "$map" "$from" "$to"
+[ -z "$from" ] || measure reach reach "$map" "$from"
+measure learn search learn "$map" -o "$out/places.ttl"
+measure fit rules fit "$map" --truth "$truth" -o "$out/fitted.rules.yaml"
+measure try rules try "$map" "${RULES:-$here/../rules/outdoor.rules.yaml}"
 measure costmap costmap "$map" -o "$out/costs.pgm"
 measure view view "$map" -o "$out/page.html"
