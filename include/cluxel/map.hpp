@@ -206,9 +206,9 @@ class CLUXEL_API Map {
   /// The scans, sorted by id.
   std::vector<Cloud> clouds() const;
   /// All points of a scan, in the order in which they were measured. Cost: 0.3 us a point, and for the tiles within its
-  /// bounds that no call before has left in memory 0.3 us a point of these and 20 ns a point of all scans in them. A map
-  /// of less than some 2.4 million points is read as a whole by the second call, and each scan then costs its points
-  /// alone. Memory: some 150 MB, and the points.
+  /// bounds that no call before has left in memory 0.3 us a point of these and 20 ns a point of all scans in them. A
+  /// map of less than some 2.4 million points is read as a whole by the second call, and each scan then costs its
+  /// points alone. Memory: some 150 MB, and the points.
   PointCloud points(const Cloud& cloud) const;
   /// The points of an object in all scans, scan by scan. Cost: 20 ns a point of the scans whose bounds meet its tiles,
   /// and as for a scan that of its tiles. Memory: as for a scan.
