@@ -78,7 +78,7 @@ class RayOrigins : public testing::Test {
     return some.size() == others.size() && std::all_of(some.begin(), some.end(), is_among);
   }
   /// Per cell of the map of poses, what another map knows.
-  static std::vector<float> knownIn(const std::string& name) {
+  static LargeArray<float> knownIn(const std::string& name) {
     static const MapReader posed = mapOf("posed");
     static const TerrainGrid terrain = terrainOf(posed);
     static const SightGrid sight = sightOf(posed, terrain, std::vector<bool>(posed.objects().size()), 1.2);

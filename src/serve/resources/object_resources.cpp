@@ -180,7 +180,10 @@ HttpResponse answerPoints(ServedMap& map, const ResourceRequest& asked, const st
   requireKnown(asked.target.parameters, {});
   if (!chosen) throw Refusal(406, "points can be had as application/json or text/csv");
   PointCloud points;
-  map.withReader([&](const mapping::MapReader& reader) { points = pointsOf(reader, currentObject(reader, id).iri); });
+  map.withReader([&](const mapping::MapReader& reader) {
+    mapping::KeptAnswers answers(reader);
+    points = pointsOf(reader, answers, currentObject(reader, id).iri);
+  });
   HttpResponse response{200, "text/csv; charset=utf-8", {}, {}};
   if (*chosen == 0)
     response = jsonResponse(pointsJson(points), asked.limits);
