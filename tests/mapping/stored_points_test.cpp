@@ -64,6 +64,18 @@ TEST(PackedPoints, KeepEveryBit) {
     }
 }
 
+TEST(PackedPoints, TellWhetherTheyHaveOriginsWithoutBeingUnpacked) {
+  for (const std::size_t count : {1U, 2U, 5'000U})
+    for (int kept = 0; kept < 8; ++kept) {
+      ScanPoints points = randomPoints(count, 7, true);
+      if ((kept & 1) == 0) points.intensity.clear();
+      if ((kept & 2) == 0) points.label.clear();
+      if ((kept & 4) == 0) points.origin.clear();
+      EXPECT_EQ(haveOrigins(packedPoints(points), count), !points.origin.empty()) << count << ' ' << kept;
+    }
+  EXPECT_FALSE(haveOrigins("", 1));
+}
+
 TEST(PackedPoints, OfAScanTakeLessThanTwoThirds) {
   const SmallCampus campus({.seed = 3, .stops = 1, .size_m = 45, .points_per_stop = 20'000});
   const ScanPoints& points = campus.scans()[0].scan.points;

@@ -45,6 +45,10 @@ class RayOrigins : public testing::Test {
     }
     write("posed", posed), write("shifted", shifted), write("unposed", unposed), write("joined", {joined});
     for (Scan& scan : unposed) scan.points.origin.clear();
+    Scan first = posed.front();
+    first.T_map_sensor.setIdentity(), first.has_pose = false;
+    first.points.origin.assign(first.points.size(), Eigen::Vector3f::Zero());
+    write("first", {first});
     write("unknown", unposed);
   }
   static void TearDownTestSuite() {
@@ -124,6 +128,7 @@ class RayOrigins : public testing::Test {
 TEST_F(RayOrigins, TellWhereRaysStart) {
   for (const char* name : {"posed", "shifted", "unposed", "joined"})
     EXPECT_TRUE(areAlike(startsIn(name), sensors)) << name;
+  EXPECT_TRUE(areAlike(startsIn("first"), {Eigen::Vector3d::Zero()})) << "the sensor defines the frame";
   EXPECT_TRUE(startsIn("unknown").empty());
 }
 
@@ -156,6 +161,7 @@ TEST_F(RayOrigins, FactsAndTheViewTellThePlaceOfTheSensor) {
       shown.emplace_back(cloud.at("position").get<std::vector<double>>().data());
     EXPECT_TRUE(areAlike(shown, sensors)) << name;
   }
+  EXPECT_TRUE(areAlike(placesBy(mapOf("first"), query), {Eigen::Vector3d::Zero()}));
   for (const char* name : {"joined", "unknown"}) EXPECT_TRUE(placesBy(mapOf(name), query).empty()) << name;
 }
 

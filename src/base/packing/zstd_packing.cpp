@@ -71,14 +71,19 @@ std::string packedBytes(std::string_view bytes) {
   return packed;
 }
 
-std::optional<UnpackedBytes> unpackedBytes(std::string_view packed, std::uint64_t max_bytes) {
+std::optional<std::uint64_t> statedBytes(std::string_view packed) {
   const unsigned long long stated = ZSTD_getFrameContentSize(packed.data(), packed.size());
   if (stated == ZSTD_CONTENTSIZE_UNKNOWN || stated == ZSTD_CONTENTSIZE_ERROR) return std::nullopt;
-  if (stated > max_bytes || stated / kMaxRatio > packed.size()) return std::nullopt;
+  return stated;
+}
+
+std::optional<UnpackedBytes> unpackedBytes(std::string_view packed, std::uint64_t max_bytes) {
+  const auto stated = statedBytes(packed);
+  if (!stated || *stated > max_bytes || *stated / kMaxRatio > packed.size()) return std::nullopt;
   if (ZSTD_findFrameCompressedSize(packed.data(), packed.size()) != packed.size()) return std::nullopt;
-  UnpackedBytes bytes{std::make_unique_for_overwrite<char[]>(stated), stated};
-  const std::size_t size = ZSTD_decompressDCtx(unpacking(), bytes.data.get(), stated, packed.data(), packed.size());
-  if (ZSTD_isError(size) != 0 || size != stated) return std::nullopt;
+  UnpackedBytes bytes{std::make_unique_for_overwrite<char[]>(*stated), *stated};
+  const std::size_t size = ZSTD_decompressDCtx(unpacking(), bytes.data.get(), *stated, packed.data(), packed.size());
+  if (ZSTD_isError(size) != 0 || size != *stated) return std::nullopt;
   return bytes;
 }
 

@@ -27,6 +27,8 @@ struct UnpackedBytes {
 /// What packedBytes() made `packed` from; none when it is damaged. A frame that states more bytes than its length can
 /// hold, or more than `max_bytes`, is refused before memory is asked for.
 std::optional<UnpackedBytes> unpackedBytes(std::string_view packed, std::uint64_t max_bytes);
+/// How many bytes `packed` states to hold, without unpacking them; none when it is damaged.
+std::optional<std::uint64_t> statedBytes(std::string_view packed);
 
 /// Appends the first byte of each item, then the second of each, and so on.
 void appendPlanes(std::string& bytes, const void* items, std::size_t count, std::size_t item_bytes);

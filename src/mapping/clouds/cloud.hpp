@@ -20,6 +20,7 @@ struct Cloud {
   std::optional<double> time_s;
   Eigen::Isometry3d T_map_sensor = Eigen::Isometry3d::Identity();
   bool has_pose = false;
+  bool has_ray_starts = false;  ///< a pose or the origins of its points tell where its rays start
   std::uint64_t point_count = 0;
   Eigen::Vector3d min = Eigen::Vector3d::Zero(), max = Eigen::Vector3d::Zero();  ///< bounds of its points [m, map]
   /// Bounds of its rays, from their origins to the points [m, map]. Endless in maps of versions that did not store
@@ -31,5 +32,6 @@ struct Cloud {
 
 /// The views of the clouds whose sensor's place is known.
 std::vector<perception::SceneView> viewsOf(const std::vector<Cloud>& clouds);
+std::vector<scan::ScanId> idsOf(const std::vector<Cloud>& clouds);
 
 }  // namespace cluxel::mapping

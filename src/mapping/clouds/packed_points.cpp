@@ -11,6 +11,7 @@ namespace {
 
 constexpr std::string_view kKind = "SCAN";
 constexpr char kVersion = 3;
+constexpr std::size_t kArrays = 8;  ///< x, y, z, intensity, label, and three of origins
 
 std::vector<float> flat(const std::vector<Eigen::Vector3f>& places, int axis) {
   std::vector<float> values;
@@ -71,6 +72,14 @@ scan::ScanPoints unpackedPoints(std::string_view packed, std::uint64_t stated_po
   for (std::size_t i = 0; i < x.size(); ++i) points.origin.emplace_back(x[i], y[i], z[i]);
   requireLengths(points);
   return points;
+}
+
+bool haveOrigins(std::string_view packed, std::uint64_t stated_points) {
+  // Without origins a point has at most five values, with them at least six.
+  constexpr std::uint64_t kMostWithout = 5 * sizeof(float), kHeads = kArrays * sizeof(std::uint64_t);
+  if (packed.size() <= kKind.size()) return false;
+  const auto stated = statedBytes(packed.substr(kKind.size() + 1));
+  return stated && *stated > stated_points * kMostWithout + kHeads;
 }
 
 }  // namespace cluxel::mapping

@@ -15,5 +15,8 @@ std::string packedPoints(const scan::ScanPoints& points);
 /// Throws Error (StoreUnavailable) for other bytes than packedPoints() writes, and for many more points than stated,
 /// before memory is asked for.
 scan::ScanPoints unpackedPoints(std::string_view packed, std::uint64_t stated_points);
+/// Whether the packed points have ray origins, by the size that they state: nothing is unpacked. False for damaged
+/// ones.
+bool haveOrigins(std::string_view packed, std::uint64_t stated_points);
 
 }  // namespace cluxel::mapping

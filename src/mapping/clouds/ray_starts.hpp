@@ -12,12 +12,13 @@
 namespace cluxel::mapping {
 
 /// The one place of the sensor [m, map]: where the ray origins of the points say, else at the pose. Absent when rays
-/// start in several places (perception::kSameSensor_m), or nothing tells where. A scan without a pose whose sensor
-/// stood at the very origin of its frame counts as one that tells nothing.
+/// start in several places (perception::kSameSensor_m), or nothing tells where.
 std::optional<Eigen::Vector3d> sensorPlaceOf(const Cloud& cloud);
 
-/// The last places of rays [m, map], the start of the last ray first, one for each square of 1 m. Empty when nothing
-/// tells where rays start. The points are read where sensorPlaceOf() is absent: some 20 ns a point.
-std::vector<Eigen::Vector3d> rayStartsOf(const rdf::ReadTransaction& transaction, const Cloud& cloud);
+/// The last places of rays [m, map], the start of the last ray first, one for each square of `square_m` to the side.
+/// Empty when nothing tells where rays start. The points are read where rays start in several places: some 20 ns a
+/// point.
+std::vector<Eigen::Vector3d> rayStartsOf(const rdf::ReadTransaction& transaction, const Cloud& cloud,
+                                         double square_m = 1);
 
 }  // namespace cluxel::mapping

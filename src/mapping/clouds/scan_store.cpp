@@ -77,11 +77,21 @@ Cloud cloudFromBytes(const scan::ScanId& id, std::string_view bytes) {
   }
 }
 
+/// The cloud with what its points tell of it, without a look at each.
+Cloud withRayStarts(const rdf::ReadTransaction& transaction, Cloud cloud) {
+  cloud.has_ray_starts = cloud.has_pose;
+  if (cloud.has_pose) return cloud;
+  const auto points = transaction.block(tables::kScanPoints, tables::keyOf(cloud.id));
+  cloud.has_ray_starts = points && haveOrigins(*points, cloud.point_count);
+  return cloud;
+}
+
 /// What tells whether a scan is there, without a look at its points.
 Cloud unmeasuredCloud(const scan::Scan& scan) {
   Cloud cloud;
   cloud.id = scan.id, cloud.source = scan.source, cloud.time_s = scan.time_s;
   cloud.T_map_sensor = scan.T_map_sensor, cloud.has_pose = scan.has_pose;
+  cloud.has_ray_starts = scan.has_pose || !scan.points.origin.empty();
   cloud.point_count = scan.points.size();
   return cloud;
 }
@@ -167,25 +177,12 @@ scan::Scan scanOf(const Cloud& cloud, scan::ScanPoints points) {
   return scan;
 }
 
-std::vector<perception::SceneView> viewsOf(const std::vector<Cloud>& clouds) {
-  std::vector<perception::SceneView> views;
-  for (const Cloud& cloud : clouds)
-    if (cloud.sight) views.push_back({cloud.id, cloud.T_map_sensor, *cloud.sight});
-  return views;
-}
-
 TileSet tilesInBounds(const Cloud& cloud, const TileSet& tiles, const perception::TileGrid& grid) {
   const perception::TileKey low = grid.tileOf(cloud.min), high = grid.tileOf(cloud.max);
   TileSet reached;
   for (auto tile = tiles.lower_bound({low.x, low.y}); tile != tiles.end() && tile->x <= high.x; ++tile)
     if (tile->y >= low.y && tile->y <= high.y) reached.insert(*tile);
   return reached;
-}
-
-std::vector<scan::ScanId> idsOf(const std::vector<Cloud>& clouds) {
-  std::vector<scan::ScanId> ids;
-  for (const Cloud& cloud : clouds) ids.push_back(cloud.id);
-  return ids;
 }
 
 TileSet PointChanges::tiles() const {
@@ -324,7 +321,7 @@ scan::Scan storedScan(const rdf::ReadTransaction& transaction, const scan::ScanI
 std::vector<Cloud> storedClouds(const rdf::ReadTransaction& transaction) {
   std::vector<Cloud> clouds;
   transaction.forEachBlock(tables::kScans, "", [&](std::string_view key, std::string_view bytes) {
-    clouds.push_back(cloudFromBytes(tables::hashOfKey(key), bytes));
+    clouds.push_back(withRayStarts(transaction, cloudFromBytes(tables::hashOfKey(key), bytes)));
   });
   return clouds;
 }
@@ -332,7 +329,7 @@ std::vector<Cloud> storedClouds(const rdf::ReadTransaction& transaction) {
 std::optional<Cloud> storedCloud(const rdf::ReadTransaction& transaction, const scan::ScanId& id) {
   const auto bytes = transaction.block(tables::kScans, tables::keyOf(id));
   if (!bytes) return std::nullopt;
-  return cloudFromBytes(id, *bytes);
+  return withRayStarts(transaction, cloudFromBytes(id, *bytes));
 }
 
 Cloud requiredCloud(const rdf::ReadTransaction& transaction, const scan::ScanId& id) {

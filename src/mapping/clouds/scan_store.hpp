@@ -100,7 +100,6 @@ void storeTiles(rdf::WriteTransaction& transaction, const TileSet& tiles);
 
 /// Those of `tiles` that lie within the bounds of the cloud, a box: all in which it can have points.
 TileSet tilesInBounds(const Cloud& cloud, const TileSet& tiles, const perception::TileGrid& grid);
-std::vector<scan::ScanId> idsOf(const std::vector<Cloud>& clouds);
 /// The clouds of the map, ascending by id.
 std::vector<Cloud> storedClouds(const rdf::ReadTransaction& transaction);
 std::optional<Cloud> storedCloud(const rdf::ReadTransaction& transaction, const scan::ScanId& id);
