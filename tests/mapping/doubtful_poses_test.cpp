@@ -70,7 +70,7 @@ TEST_F(DoubtfulPoses, AreThoseOfOneScanAmongRightOnes) {
   Eigen::Isometry3d turned = Eigen::Isometry3d::Identity();
   turned.rotate(Eigen::AngleAxisd(0.35, Eigen::Vector3d::UnitZ()));
   for (const std::size_t scan : {0U, 2U, 5U}) {
-    const auto is_doubted = AnyOf(HasSubstr("poses do not fit each other"), HasSubstr("poses may be grossly wrong"));
+    const auto is_doubted = AnyOf(HasSubstr("poses do not fit each other"), HasSubstr("poses may be wrong"));
     const Eigen::Isometry3d shifted(Eigen::Translation3d(0.9, 1.2, 0));
     EXPECT_THAT(notesOn(withScanAt(scan, shifted)), is_doubted) << scan;
     EXPECT_THAT(notesOn(withScanAt(scan, turned)), is_doubted) << scan;
@@ -80,7 +80,30 @@ TEST_F(DoubtfulPoses, AreThoseOfOneScanAmongRightOnes) {
 TEST_F(DoubtfulPoses, AreThoseOfATrackThatRunsBackwards) {
   Poses poses = truePoses();
   std::reverse(poses.begin(), poses.end());
-  EXPECT_THAT(notesOn(poses), HasSubstr("poses may be grossly wrong: "));
+  EXPECT_THAT(notesOn(poses), HasSubstr("poses may be wrong, or a wall or floor lies between scans: "));
+}
+
+TEST_F(DoubtfulPoses, AreNotThoseOfAnotherFloor) {
+  for (const std::size_t scan : {0U, 2U, 5U})
+    EXPECT_THAT(notesOn(withScanAt(scan, Eigen::Isometry3d(Eigen::Translation3d(0, 0, 30)))), IsEmpty()) << scan;
+}
+
+TEST_F(DoubtfulPoses, NameTheScansThatFitWorst) {
+  Poses poses = truePoses();
+  for (std::size_t i = 0; i < poses.size(); ++i) poses[i].pretranslate(Eigen::Vector3d(0, 0, i % 2 == 0 ? 0 : 0.15));
+  EXPECT_THAT(notesOn(poses),
+              testing::ContainsRegex("median of the scans examined\\), those of .* and .* 0\\.[0-9]+ m"));
+}
+
+TEST_F(DoubtfulPoses, HaveASpacingThatIsANumber) {
+  const ScratchFolder folder;
+  for (const char* name : {"a.xyz", "b.xyz"}) std::ofstream(folder.path() / name) << "1 2 3\n1 2 4\n1 3 4\n";
+  std::ofstream(folder.path() / "m.yaml") << "scans:\n"
+                                             "  - {path: a.xyz, pose: {xyz: [0, 0, 0]}}\n"
+                                             "  - {path: b.xyz, pose: {xyz: [0, 0, 1]}}\n";
+  const auto found = measurePoses(scansOf({folder.path() / "m.yaml"}), {}, 1, silence());
+  ASSERT_EQ(found.pairs.size(), 1U);
+  EXPECT_TRUE(std::isinf(found.pairs[0].spacing));
 }
 
 TEST_F(DoubtfulPoses, AreFoundBesideScansWithoutAPose) {

@@ -34,13 +34,19 @@ namespace {
 /// The least of the residuals that tells by itself: those of single pairs vary where leaves stand.
 constexpr double kGrossResidual_m = 4 * scan::kFittingResidual_m;
 
-/// Scans so close to each other overlap well wherever they were taken, unless a pose is wrong.
-constexpr double kAmid = 1.5;
+/// Scans so close to each other overlap well, unless a pose is wrong or a wall lies between them.
+constexpr double kNear = 1.5;
 
 /// The names of the two scans of a pair.
 std::string namesOf(const scan::ScanSet& scans, const scan::PoseRegistration& found, const scan::RegisteredPair& pair) {
   const auto name = [&](std::size_t i) { return scans.file(found.scans[i].index).path.string(); };
   return name(pair.first) + " and " + name(pair.second);
+}
+
+std::string metres(double length_m) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.2f m", length_m);
+  return text.data();
 }
 
 /// What measured pairs say against the poses; empty when nothing.
@@ -49,21 +55,20 @@ std::string misfit(const scan::ScanSet& scans, const scan::PoseRegistration& fou
   for (const scan::RegisteredPair& pair : found.pairs)
     if (pair.outcome == scan::PairOutcome::Used && (!worst || pair.residual_before_m > worst->residual_before_m))
       worst = &pair;
-  std::array<char, 64> text{};
-  if (found.residual_before_m > scan::kFittingResidual_m) {
-    std::snprintf(text.data(), text.size(), "%.2f m apart (median of the scans examined)", found.residual_before_m);
-    return "surfaces of neighbouring scans lie " + std::string(text.data());
-  }
-  if (!worst || worst->residual_before_m <= kGrossResidual_m) return {};
-  std::snprintf(text.data(), text.size(), " lie %.2f m apart", worst->residual_before_m);
-  return "surfaces of " + namesOf(scans, found, *worst) + text.data();
+  if (!worst) return {};
+  const std::string of_worst = "of " + namesOf(scans, found, *worst);
+  if (found.residual_before_m > scan::kFittingResidual_m)
+    return "surfaces of neighbouring scans lie " + metres(found.residual_before_m) +
+           " apart (median of the scans examined), those " + of_worst + " " + metres(worst->residual_before_m);
+  if (worst->residual_before_m <= kGrossResidual_m) return {};
+  return "surfaces " + of_worst + " lie " + metres(worst->residual_before_m) + " apart";
 }
 
-/// The pair of least overlap among those that lie amid each other, though no measured pairs join them.
+/// The pair of least overlap among those of scans near each other that no measured pairs join.
 const scan::RegisteredPair* unjoined(const scan::PoseRegistration& found) {
   const scan::RegisteredPair* least = nullptr;
   for (const scan::RegisteredPair& pair : found.pairs)
-    if (pair.spacing < kAmid && found.scans[pair.first].group != found.scans[pair.second].group &&
+    if (pair.spacing < kNear && found.scans[pair.first].group != found.scans[pair.second].group &&
         (!least || pair.overlap < least->overlap))
       least = &pair;
   return least;
@@ -88,8 +93,8 @@ void noteDoubtfulPoses(const scan::ScanSet& scans, unsigned threads, ProgressSin
   if (const scan::RegisteredPair* pair = unjoined(found)) {
     std::array<char, 64> text{};
     std::snprintf(text.data(), text.size(), "only %.0f %% of their surfaces meet", 100 * pair->overlap);
-    sink.note("poses may be grossly wrong: " + namesOf(examined, found, *pair) + " lie amid each other, but " +
-              text.data() + "; check that the poses belong to the scans");
+    sink.note("poses may be wrong, or a wall or floor lies between scans: " + namesOf(examined, found, *pair) +
+              " lie near each other, but " + text.data() + "; check that the poses belong to the scans");
   }
 }
 

@@ -11,8 +11,9 @@ namespace cluxel::mapping {
 /// does.
 scan::ScanSet withRefinedPoses(const scan::ScanSet& scans, unsigned threads, ProgressSink& sink);
 
-/// Notes poses that do not fit each other, because they degrade labels: surfaces of scans that lie apart, and scans
-/// that no measured pairs join, though each lies amid the other. Checks a sample of at most six scans, and notes when
+/// Notes poses that do not fit each other, because they degrade labels: surfaces of scans that lie apart. Asks about
+/// scans near each other, at the same heights, that no measured pairs join: a pose may be wrong, or a wall lies between
+/// them. Checks a sample of at most six scans, and notes when
 /// that fails. Unreadable files are not reported here but when they are loaded.
 void noteDoubtfulPoses(const scan::ScanSet& scans, unsigned threads, ProgressSink& sink);
 

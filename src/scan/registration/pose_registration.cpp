@@ -11,6 +11,7 @@
 #include "base/counted_progress.hpp"
 #include "base/disjoint_sets.hpp"
 #include "base/parallel.hpp"
+#include "base/quantile.hpp"
 #include "scan/registration/pair_evidence.hpp"
 #include "scan/registration/pose_graph.hpp"
 #include "scan/registration/registration_scans.hpp"
@@ -182,10 +183,11 @@ std::vector<ScanPlace> placesOf(const RegistrationScans& scans, const Poses& pos
   return places;
 }
 
-/// Where most surfaces of a scan lie, across the ground [m, map].
+/// Where most surfaces of a scan lie [m, map].
 struct Middle {
-  Eigen::Vector2d at = Eigen::Vector2d::Zero();
-  double reach_m = 0;  ///< half of them lie within it; 0 for too few to tell
+  Eigen::Vector2d at = Eigen::Vector2d::Zero();  ///< across the ground
+  double reach_m = 0;                            ///< half of them lie within it; 0 for too few to tell
+  double low_m = 0, high_m = 0;                  ///< nine tenths of them lie between these heights
 };
 
 Middle middleOf(const SurfaceCloud& cloud, const Eigen::Isometry3d& T_map_sensor) {
@@ -193,7 +195,12 @@ Middle middleOf(const SurfaceCloud& cloud, const Eigen::Isometry3d& T_map_sensor
   Middle middle;
   if (cloud.withPlane().size() < kFew) return middle;
   std::vector<Eigen::Vector2d> places;
-  for (const std::size_t i : cloud.withPlane()) places.emplace_back((T_map_sensor * cloud.point(i)).head<2>());
+  std::vector<double> heights;
+  for (const std::size_t i : cloud.withPlane()) {
+    const Eigen::Vector3d place = T_map_sensor * cloud.point(i);
+    places.emplace_back(place.head<2>());
+    heights.push_back(place.z());
+  }
   const auto median = [&](const auto& value) {
     std::vector<double> values;
     for (const Eigen::Vector2d& place : places) values.push_back(value(place));
@@ -201,7 +208,21 @@ Middle middleOf(const SurfaceCloud& cloud, const Eigen::Isometry3d& T_map_sensor
   };
   for (const int axis : {0, 1}) middle.at[axis] = median([&](const Eigen::Vector2d& place) { return place[axis]; });
   middle.reach_m = median([&](const Eigen::Vector2d& place) { return (place - middle.at).norm(); });
+  std::sort(heights.begin(), heights.end());
+  middle.low_m = quantileOf(heights, 0.05), middle.high_m = quantileOf(heights, 0.95);
   return middle;
+}
+
+/// Whether at least half of the heights of one of them are heights of the other, too.
+bool areLevel(const Middle& a, const Middle& b) {
+  const double common_m = std::min(a.high_m, b.high_m) - std::max(a.low_m, b.low_m);
+  return common_m >= std::min(a.high_m - a.low_m, b.high_m - b.low_m) / 2;
+}
+
+double spacingOf(const Middle& a, const Middle& b) {
+  const double reach_m = std::min(a.reach_m, b.reach_m);
+  if (reach_m <= 0 || !areLevel(a, b)) return std::numeric_limits<double>::infinity();
+  return (a.at - b.at).norm() / reach_m;
 }
 
 /// The report, with scans in natural order of their paths.
@@ -222,8 +243,7 @@ PoseRegistration reported(const RegistrationScans& scans, const Poses& poses, co
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     const std::size_t one = place[pairs[k].first], other = place[pairs[k].second];
     const std::size_t first = std::min(one, other), second = std::max(one, other);
-    const Middle &a = middles[pairs[k].first], &b = middles[pairs[k].second];
-    const double spacing = (a.at - b.at).norm() / std::min(a.reach_m, b.reach_m);
+    const double spacing = spacingOf(middles[pairs[k].first], middles[pairs[k].second]);
     report.pairs.push_back(
         {first, second, outcomes[k], after[k].overlap, before[k].residual_m, after[k].residual_m, spacing});
     if (outcomes[k] != PairOutcome::Used) continue;

@@ -35,7 +35,8 @@ struct RegisteredPair {
   double residual_before_m = 0;  ///< median distance of points of one scan to planes of the other, of the surfaces ...
   double residual_after_m = 0;   ///< ... that face the direction in which the two disagree most
   /// How far apart the scans lie under the given poses, across the ground: the distance of their middles by that within
-  /// which half of the points of a scan lie, the smaller of the two. Infinite where few points tell.
+  /// which half of the points of a scan lie, the smaller of the two. Infinite where few points tell, and where the
+  /// scans lie at other heights, as on two floors of a house.
   double spacing = std::numeric_limits<double>::infinity();
 };
 
