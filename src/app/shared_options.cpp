@@ -18,7 +18,9 @@ scan::ScanSetParams ScanOptions::params() const {
   return {.poses = poses,
           .frame = frame,
           .remedies = {.poses = "name a poses file with --poses FILE",
-                       .unit = "state the unit with --units mm, cm, m, ft or us-ft",
+                       .unit = frame.unit == scan::LengthUnit::Metre
+                                   ? "state the unit with --units mm, cm, m, ft or us-ft"
+                                   : "check --units " + std::string(scan::nameOf(frame.unit)),
                        .up = frame.up == scan::UpAxis::Y ? "leave --up y out" : "state the up axis with --up y"}};
 }
 

@@ -29,18 +29,21 @@ std::string notKept(const std::filesystem::path& path, const std::string& crs) {
 
 }  // namespace
 
-std::string keptCrs(const std::string& crs, const std::filesystem::path& manifest, const ScanSetParams& params,
+std::string keptCrs(const Manifest& manifest, const std::filesystem::path& path, const ScanSetParams& params,
                     ProgressSink& sink) {
+  const std::string& crs = manifest.crs;
   const std::string name = crs.starts_with("+proj") ? crs + " +type=crs" : crs;  // else PROJ takes it for a conversion
   const ReferenceSystem system = referenceSystem(name);
   const LasCrs stated{name, {}, system.kind == ReferenceSystem::Kind::Geographic, {}};
-  std::optional<std::string> fault = faultOfUnit(stated, params, "the scans");
+  std::optional<std::string> fault;
+  // Scans in a frame of their own may have any unit.
+  if (manifest.poses_in_outer || stated.is_geographic) fault = faultOfUnit(stated, params, "the scans");
   if (system.kind == ReferenceSystem::Kind::Unknown)
     fault = "its coordinate system (" + crs +
             ") is not known as one of plane coordinates; state the projected one of the outer frame, or none";
-  if (fault) sink.note(manifest.string() + ": warning: " + *fault);
+  if (fault) sink.note(path.string() + ": warning: " + *fault);
   const bool is_converted = params.frame.unit != LengthUnit::Metre && unitOf(stated) == params.frame.unit;
-  if (is_converted) sink.note(notKept(manifest, crs));
+  if (is_converted) sink.note(notKept(path, crs));
   return is_converted ? std::string() : crs;
 }
 

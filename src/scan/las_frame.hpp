@@ -7,14 +7,15 @@
 
 #include "cluxel/progress.hpp"
 #include "scan/formats/las_crs.hpp"
+#include "scan/formats/manifest.hpp"
 #include "scan/scan_set.hpp"
 
 namespace cluxel::scan {
 
 /// The coordinate system of a manifest as a map has it: empty when the coordinates are converted from its unit to
-/// metres. Warnings go to `sink`, as for LAS files: on degrees, on another unit than that of the inputs, and on a
-/// system that is unknown or has no plane coordinates. Cost: some milliseconds.
-std::string keptCrs(const std::string& crs, const std::filesystem::path& manifest, const ScanSetParams& params,
+/// metres. Warnings go to `sink`, as for LAS files: on degrees, on another unit than that of the inputs where
+/// these lie in the outer frame, and on a system that is unknown or has no plane coordinates. Cost: some milliseconds.
+std::string keptCrs(const Manifest& manifest, const std::filesystem::path& path, const ScanSetParams& params,
                     ProgressSink& sink);
 
 class LasFrame {

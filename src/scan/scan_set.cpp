@@ -207,7 +207,7 @@ class ScanGatherer {
     if (manifest.map_origin) map_origin_ = manifest.map_origin;
     if (manifest.crs.empty() || manifest.crs == stated_crs_) return;
     stated_crs_ = manifest.crs;
-    crs_ = keptCrs(stated_crs_, path, *params_, *sink_);
+    crs_ = keptCrs(manifest, path, *params_, *sink_);
   }
 
   void addEntry(const ManifestEntry& entry) {
@@ -255,11 +255,12 @@ class ScanGatherer {
     const bool may_have_origins = std::any_of(first, files.end(), [](const ScanFile& file) {
       return !file.has_pose && (file.format == ScanFormat::Pcd || file.format == ScanFormat::Ply);
     });
-    sink_->note(std::to_string(unposed) + " of " + std::to_string(files.size()) +
-                " scans have no pose and are taken as given in the map frame (" + first->path.string() +
-                (unposed > 1 ? ", ..." : "") +
-                "): " + (may_have_origins ? "unless the points state where rays start (vp_x, vp_y, vp_z), " : "") +
-                "the position of the sensor is unknown, so visibility queries answer \"not observed\"");
+    sink_->note(
+        std::to_string(unposed) + " of " + std::to_string(files.size()) +
+        " scans have no pose and are taken as given in the map frame (" + first->path.string() +
+        (unposed > 1 ? ", ..." : "") +
+        "): they tell neither when something was there nor what changed, and the position of the sensor is unknown" +
+        (may_have_origins ? " unless the points state where rays start (vp_x, vp_y, vp_z)" : ""));
   }
 
   const ScanSetParams* params_;

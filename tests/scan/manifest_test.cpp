@@ -92,12 +92,14 @@ TEST(Manifest, MixesFilesFoldersPosesAndFrames) {
 }
 
 /// What is noted when a manifest with this coordinate system is read.
-std::string notesOnCrs(const std::string& crs, const ScanSetParams& params = {}, const std::string& kept = "") {
+std::string notesOnCrs(const std::string& crs, const ScanSetParams& params = {}, const std::string& kept = "",
+                       const std::string& frame = "outer") {
   const ScratchFolder folder;
   folder.write("a.xyz", "1 2 3\n");
   folder.write("poses.txt", "1 0 0 1 0 1 0 0 0 0 1 0\n");
   test::NoteKeeper sink;
-  const auto manifest = folder.write("m.yaml", "crs: \"" + crs + "\"\nscans: [.]\n");
+  const auto manifest =
+      folder.write("m.yaml", "map_origin: [0, 0, 0]\nframe: " + frame + "\ncrs: \"" + crs + "\"\nscans: [.]\n");
   EXPECT_EQ(ScanSet::open({manifest}, params, sink).crs(), kept.empty() ? crs : kept == "none" ? "" : kept);
   std::string notes;
   for (const std::string& note : sink.notes) notes += note + '\n';
@@ -115,6 +117,13 @@ TEST(Manifest, WarnsOfACoordinateSystemThatIsNoneOfMetres) {
   for (const char* crs : {"nonsense", "EPSG:99999", "EPSG:4978"})
     EXPECT_THAT(notesOnCrs(crs), HasSubstr("m.yaml: warning: its coordinate system (" + std::string(crs) +
                                            ") is not known as one of plane coordinates"));
+}
+
+TEST(Manifest, MayHaveScansOfAnyUnitInAFrameOfTheirOwn) {
+  ScanSetParams params;
+  params.frame.unit = LengthUnit::Millimetre;
+  EXPECT_EQ(notesOnCrs("EPSG:25832", params, "", "map"), "");
+  EXPECT_THAT(notesOnCrs("EPSG:25832", params), HasSubstr("is m, but its coordinates are read as mm"));
 }
 
 TEST(Manifest, KeepsNoCoordinateSystemFromWhoseUnitTheCoordinatesAreConverted) {
