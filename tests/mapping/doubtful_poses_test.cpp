@@ -97,7 +97,8 @@ TEST_F(DoubtfulPoses, NameTheScansThatFitWorst) {
 
 TEST_F(DoubtfulPoses, HaveASpacingThatIsANumber) {
   const ScratchFolder folder;
-  for (const char* name : {"a.xyz", "b.xyz"}) std::ofstream(folder.path() / name) << "1 2 3\n1 2 4\n1 3 4\n";
+  std::ofstream(folder.path() / "a.xyz") << "1 2 3\n1 2 4\n1 3 4\n";
+  std::ofstream(folder.path() / "b.xyz") << "1 2 3\n1 2 4\n1 3 5\n";
   std::ofstream(folder.path() / "m.yaml") << "scans:\n"
                                              "  - {path: a.xyz, pose: {xyz: [0, 0, 0]}}\n"
                                              "  - {path: b.xyz, pose: {xyz: [0, 0, 1]}}\n";
