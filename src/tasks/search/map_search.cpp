@@ -44,10 +44,7 @@ double shown(double value) {
 
 Eigen::Vector2d lastStop(const mapping::MapReader& map) {
   std::vector<mapping::Cloud> clouds = map.clouds();
-  const auto tells_nothing = [&](const mapping::Cloud& cloud) {
-    return !cloud.has_pose && mapping::rayStartsOf(map.transaction(), cloud).empty();
-  };
-  std::erase_if(clouds, tells_nothing);
+  std::erase_if(clouds, [](const mapping::Cloud& cloud) { return !cloud.has_ray_starts; });
   if (clouds.empty())
     throw Error(ErrorKind::NotFound, "no scan of the map tells where its sensor stood; name the start",
                 Remedy::NameStart);

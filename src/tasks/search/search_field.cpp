@@ -23,6 +23,12 @@ LargeArray<std::uint32_t> cellsOf(const GridFrame& frame, const PlaceEvidence& p
   return cells;
 }
 
+/// From anywhere in a square of this side much the same is seen, so that one view of it is enough.
+double alike_m(const SearchParams& params) {
+  constexpr double kLeast_m = 1, kShareOfView = 0.2;
+  return std::max(kLeast_m, kShareOfView * params.view_m);
+}
+
 /// What a scan knows that was measured from a place.
 void addView(const SightGrid& sight, const Eigen::Vector2d& stop, const SearchParams& params,
              LargeArray<float>& known) {
@@ -52,7 +58,7 @@ LargeArray<float> knownShare(const mapping::MapReader& map, const TerrainGrid& t
   const GridFrame& frame = sight.frame;
   LargeArray<float> known(frame.size(), 0.0F);
   for (const mapping::Cloud& cloud : map.clouds()) {
-    const std::vector<Eigen::Vector3d> starts = mapping::rayStartsOf(map.transaction(), cloud);
+    const std::vector<Eigen::Vector3d> starts = mapping::rayStartsOf(map.transaction(), cloud, alike_m(params));
     for (std::uint32_t cell = 0; starts.empty() && cell < frame.size(); ++cell)
       if (terrain.seen[cell] != 0) known[cell] = std::max(known[cell], static_cast<float>(params.detection));
     for (const Eigen::Vector3d& start : starts) addView(sight, start.head<2>(), params, known);

@@ -43,7 +43,8 @@ std::vector<PlaceEvidence> evidenceOf(const mapping::MapReader& map, const Terra
 
 /// Per cell, the probability that the map knows an object of the class that is there: `detection` within view_m of a
 /// place where rays of a scan start and which sees the cell, from there falling to 0 at fade times view_m. Scans that
-/// do not tell where their rays start count where ground was measured.
+/// do not tell where their rays start count where ground was measured. Cost: a field of view for each scan; where rays
+/// of a scan start in several places, one for each square of a fifth of view_m (at least 1 m) in which some do.
 LargeArray<float> knownShare(const mapping::MapReader& map, const TerrainGrid& terrain, const SightGrid& sight,
                              const SearchParams& params);
 
