@@ -10,6 +10,7 @@
 #include <optional>
 #include <utility>
 
+#include "mapping/clouds/ray_starts.hpp"
 #include "mapping/regions/ground_heights.hpp"
 #include "mapping/stored_grid.hpp"
 #include "perception/visibility/sensor_sight.hpp"
@@ -38,10 +39,8 @@ std::map<std::size_t, StandingPlace> standingPlaces(const mapping::MapReader& ma
 
 /// Whether rays or points of the cloud may tell of the place.
 bool mayLookAt(const mapping::Cloud& cloud, const StandingPlace& place, double view_m) {
-  if (cloud.has_pose && cloud.sight) {
-    const Eigen::Vector3d sensor = cloud.T_map_sensor * cloud.sight->origin;
-    if ((sensor - place.foot).head<2>().norm() > view_m + perception::kSameSensor_m) return false;
-  }
+  if (const auto sensor = mapping::sensorPlaceOf(cloud))
+    if ((*sensor - place.foot).head<2>().norm() > view_m + perception::kSameSensor_m) return false;
   const Eigen::Vector3d around = Eigen::Vector3d::Constant(kBesidePoints_m);
   const Eigen::AlignedBox3d line(place.foot - around, place.foot + place.top_m() * Eigen::Vector3d::UnitZ() + around);
   return cloud.rays.intersects(line);
