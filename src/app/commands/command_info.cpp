@@ -147,7 +147,8 @@ Json cloudsJson(const mapping::MapReader& map) {
                {"extent_map_m", boxJson({cloud.min, cloud.max})}};
     if (cloud.has_pose) entry["T_map_sensor"] = poseJson(cloud.T_map_sensor);
     const std::vector<Eigen::Vector3d> starts = mapping::rayStartsOf(map.transaction(), cloud);
-    if (starts.size() == 1) entry["sensor"] = {starts[0].x(), starts[0].y(), starts[0].z()};
+    if (!starts.empty()) entry["sensor"] = {starts[0].x(), starts[0].y(), starts[0].z()};
+    if (!starts.empty() && !mapping::sensorPlaceOf(cloud)) entry["sensor_moved"] = true;
     if (cloud.time_s) entry["time_s"] = *cloud.time_s;
     json.push_back(std::move(entry));
   }
@@ -160,8 +161,8 @@ void printCloud(const mapping::MapReader& map, const mapping::Cloud& cloud) {
   if (!cloud.has_pose) std::printf("  no pose");
   const std::vector<Eigen::Vector3d> starts = mapping::rayStartsOf(map.transaction(), cloud);
   if (!starts.empty())
-    std::printf("  sensor %s %.2f %.2f %.2f m", starts.size() == 1 ? "at" : "moved, at last at", starts[0].x(),
-                starts[0].y(), starts[0].z());
+    std::printf("  sensor %s %.2f %.2f %.2f m", mapping::sensorPlaceOf(cloud) ? "at" : "moved, at last at",
+                starts[0].x(), starts[0].y(), starts[0].z());
   std::printf("%s%s\n", cloud.time_s ? "  " : "", cloud.time_s ? dateTimeText(*cloud.time_s).c_str() : "");
 }
 
