@@ -139,11 +139,11 @@ TEST_F(RayOrigins, TellWhereTheSensorStoodAtLast) {
 }
 
 TEST_F(RayOrigins, TellWhatTheMapKnows) {
-  const std::vector<float> known = knownIn("posed");
+  const LargeArray<float> known = knownIn("posed");
   EXPECT_GT(std::count(known.begin(), known.end(), 0.0F), 100) << "not all was seen";
   EXPECT_GT(std::count_if(known.begin(), known.end(), [](float share) { return share > 0.5F; }), 100);
   for (const char* name : {"shifted", "unposed", "joined"}) {
-    const std::vector<float> other = knownIn(name);
+    const LargeArray<float> other = knownIn(name);
     std::size_t different = 0;
     for (std::size_t i = 0; i < known.size(); ++i) different += std::abs(known[i] - other[i]) > 0.01F ? 1 : 0;
     EXPECT_LE(different, known.size() / 500) << name << ": more than rounding of points makes";
