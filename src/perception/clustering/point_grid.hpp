@@ -60,7 +60,7 @@ class CellKeys {
   }
 
  private:
-  /// A multiple of the tile size, so that the lowest layer is not below 0.
+  /// Above the greatest depth, so that no layer is below 0. A multiple of the tile size, from which layers count.
   static constexpr double kHeightOffset_m = kMaxHeight_m + 16.0;
   static_assert(kHeightOffset_m / kTileSize_m == static_cast<std::int64_t>(kHeightOffset_m / kTileSize_m));
   std::uint64_t cell(double value_m, double offset_m) const {
