@@ -13,8 +13,8 @@ scan::ScanSet withRefinedPoses(const scan::ScanSet& scans, unsigned threads, Pro
 
 /// Notes poses that do not fit each other, because they degrade labels: surfaces of scans that lie apart. Asks about
 /// scans near each other, at the same heights, that no measured pairs join: a pose may be wrong, or a wall lies between
-/// them. Checks a sample of at most six scans, and notes when that fails. Unreadable files are not reported here but when
-/// they are loaded.
+/// them. Checks a sample of at most six scans, and notes when that fails. Unreadable files are not reported here but
+/// when they are loaded.
 void noteDoubtfulPoses(const scan::ScanSet& scans, unsigned threads, ProgressSink& sink);
 
 }  // namespace cluxel::mapping

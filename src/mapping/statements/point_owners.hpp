@@ -31,8 +31,8 @@ class PointOwners {
               const std::vector<Cloud>& clouds);
 
   /// The numbers of the scene's cluxels that hold the points, one for each point that the scene has. Points of scans
-  /// that the map does not have are left out. Throws Error (StoreUnavailable) as CluxelFinder does. Cost: one reading of
-  /// each scan and tile that is named, the first time.
+  /// that the map does not have are left out. Throws Error (StoreUnavailable) as CluxelFinder does. Cost: one reading
+  /// of each scan and tile that is named, the first time.
   std::vector<std::uint32_t> cluxelsOf(const PointAnchor& anchor);
   /// The tiles in which the points lie, held or not.
   perception::TileSet tilesOf(const PointAnchor& anchor);
